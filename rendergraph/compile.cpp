@@ -1,0 +1,99 @@
+#include "rendergraph/compile.hpp"
+
+#include "rendergraph/stages.hpp"
+
+namespace tyndall::rg {
+namespace {
+
+void append(Diagnostics& to, Diagnostics from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+/// A dependency that shows why `batch` waits for `producer_batch`, `none` if only the order of memory asks for it.
+std::uint32_t dependency_behind(const Plan& plan, const std::vector<std::uint32_t>& batch_of_pass, std::uint32_t batch,
+                                std::uint32_t producer_batch) {
+    for (std::uint32_t i = 0; i < plan.dependencies.size(); ++i) {
+        const Dependency& d = plan.dependencies[i];
+        if (d.consumer != none && d.producer != none && batch_of_pass[d.consumer] == batch &&
+            batch_of_pass[d.producer] == producer_batch) {
+            return i;
+        }
+    }
+    return none;
+}
+
+} // namespace
+
+tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopology& topology,
+                                        const MemoryRequirements& memory, const CompileOptions& options) {
+    using namespace stages;
+    Diagnostics errors = graph.declaration_errors;
+    append(errors, validate(graph, topology));
+    if (!errors.empty()) {
+        return tl::unexpected(std::move(errors)); // what follows needs sound ranges
+    }
+    const Cells cells = cut_into_cells(graph);
+    const Flow everything = follow_versions(graph, cells);
+    append(errors, everything.errors);
+    const Order order = order_passes(graph, everything);
+    append(errors, order.errors);
+    if (!errors.empty()) {
+        return tl::unexpected(std::move(errors));
+    }
+    const Kept kept = cull(graph, everything, order, options.culling);
+    // What was ordered through a culled pass must be ordered directly.
+    const Flow flow = kept.culled_passes.empty() ? everything : follow_versions(graph, cells, &kept.pass);
+    const Schedule sched = schedule(graph, topology, cells, flow, order, kept, options.async);
+    const Memory placed = place(graph, topology, sched, memory, options.aliasing);
+    const Batches batches = make_batches(graph, sched);
+    const Synchronised sync = synchronise(graph, topology, cells, sched, placed, batches, options.full_barriers);
+
+    Plan plan;
+    plan.topology = topology;
+    plan.dependencies = sync.dependencies;
+    plan.attachments = sync.attachments;
+    plan.placements = placed.placements;
+    plan.heaps = placed.heaps;
+    plan.batches = batches.batches;
+    plan.culled_passes = kept.culled_passes;
+    plan.culled_resources = kept.culled_resources;
+    plan.first_exit_barrier = sync.first_exit;
+    plan.exit_barrier_count = static_cast<std::uint32_t>(sync.dependencies.size()) - sync.first_exit;
+    std::vector<std::uint32_t> batch_of_pass(graph.passes.size(), none);
+    for (const std::uint32_t slot : batches.order) {
+        const std::uint32_t pass = sched.order[slot];
+        batch_of_pass[pass] = batches.batch_of[slot];
+        plan.passes.push_back({
+            .pass = pass,
+            .queue = sched.queue[slot],
+            .batch = batches.batch_of[slot],
+            .slot = sched.position[slot],
+            .keep_reason = kept.reason[pass],
+            .keep_for = kept.keeps_for[pass],
+            .queue_reason = sched.queue_reason[slot],
+            .first_barrier = sync.first_of_slot[slot],
+            .barrier_count = sync.first_of_slot[slot + 1] - sync.first_of_slot[slot],
+            .first_attachment = sync.first_attachment[slot],
+            .attachment_count = sync.first_attachment[slot + 1] - sync.first_attachment[slot],
+        });
+    }
+    for (std::uint32_t i = 0; i < plan.batches.size(); ++i) {
+        plan.batches[i].releases = sync.releases[i];
+        for (BatchWait& wait : plan.batches[i].waits) {
+            wait.first_dependency = dependency_behind(plan, batch_of_pass, i, wait.batch);
+        }
+        plan.statistics.wait_count += static_cast<std::uint32_t>(plan.batches[i].waits.size());
+    }
+    for (std::uint32_t resource = 0; resource < plan.placements.size(); ++resource) {
+        plan.placements[resource].resting_layout = sync.resting_layout[resource];
+    }
+    for (const Heap& heap : plan.heaps) {
+        plan.statistics.transient_bytes += heap.size_bytes;
+    }
+    plan.statistics.transient_bytes_unaliased = placed.unaliased_bytes;
+    plan.statistics.largest_live_set_bytes = placed.largest_live_set_bytes;
+    plan.statistics.barrier_count = static_cast<std::uint32_t>(plan.dependencies.size());
+    return plan;
+}
+
+} // namespace tyndall::rg

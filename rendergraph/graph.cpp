@@ -1,0 +1,262 @@
+#include "rendergraph/graph.hpp"
+
+#include <algorithm>
+
+namespace tyndall::rg {
+namespace {
+
+// Distinguishes handles of different builders, and of one builder before and after finish(). The value reaches no
+// plan, so that it may differ from run to run.
+std::uint32_t next_identity(const void* builder, std::uint32_t previous) {
+    const auto address = reinterpret_cast<std::uintptr_t>(builder);
+    const auto mixed = static_cast<std::uint32_t>((address >> 4U) * 2654435761U);
+    const std::uint32_t next = previous == 0 ? mixed : previous + 1;
+    return next == 0 ? 1 : next;
+}
+
+} // namespace
+
+std::string_view name_of(PassKind kind) {
+    switch (kind) {
+    case PassKind::graphics: return "graphics";
+    case PassKind::compute: return "compute";
+    case PassKind::transfer: return "transfer";
+    case PassKind::host: return "host";
+    }
+    return "";
+}
+
+std::string_view name_of(QueueKind kind) {
+    switch (kind) {
+    case QueueKind::graphics: return "graphics";
+    case QueueKind::compute: return "compute";
+    case QueueKind::transfer: return "transfer";
+    }
+    return "";
+}
+
+VkClearValue clear_color(float r, float g, float b, float a) {
+    VkClearValue value = {};
+    value.color.float32[0] = r;
+    value.color.float32[1] = g;
+    value.color.float32[2] = b;
+    value.color.float32[3] = a;
+    return value;
+}
+
+VkClearValue clear_depth(float depth, std::uint32_t stencil) {
+    VkClearValue value = {};
+    value.depthStencil = {depth, stencil};
+    return value;
+}
+
+GraphBuilder::GraphBuilder() : id_(next_identity(this, 0)) {}
+
+template <typename Handle>
+Handle GraphBuilder::add_resource(ResourceDesc resource) {
+    const auto index = static_cast<std::uint32_t>(desc_.resources.size());
+    desc_.resources.push_back(std::move(resource));
+    latest_version_.push_back(0);
+    return Handle{id_, index, 0};
+}
+
+Image GraphBuilder::create_image(std::string_view name, const ImageDesc& desc, Where where) {
+    return add_resource<Image>({.name = std::string(name), .kind = ResourceKind::image, .image = desc, .where = where});
+}
+
+Buffer GraphBuilder::create_buffer(std::string_view name, const BufferDesc& desc, Where where) {
+    return add_resource<Buffer>(
+        {.name = std::string(name), .kind = ResourceKind::buffer, .buffer = desc, .where = where});
+}
+
+Image GraphBuilder::import_image(std::string_view name, const ImageDesc& desc, const ImportDesc& import, Where where) {
+    desc_.imports.push_back(import);
+    return add_resource<Image>({.name = std::string(name),
+                                .kind = ResourceKind::image,
+                                .lifetime = ResourceLifetime::imported,
+                                .image = desc,
+                                .import = static_cast<std::uint32_t>(desc_.imports.size() - 1),
+                                .where = where});
+}
+
+Buffer GraphBuilder::import_buffer(std::string_view name, const BufferDesc& desc, const ImportDesc& import,
+                                   Where where) {
+    desc_.imports.push_back(import);
+    return add_resource<Buffer>({.name = std::string(name),
+                                 .kind = ResourceKind::buffer,
+                                 .lifetime = ResourceLifetime::imported,
+                                 .buffer = desc,
+                                 .import = static_cast<std::uint32_t>(desc_.imports.size() - 1),
+                                 .where = where});
+}
+
+template <typename Handle>
+Handle GraphBuilder::add_history(Handle current, ResourceKind kind, Where where) {
+    if (!check_handle(current, kind, none, where)) {
+        return Handle{};
+    }
+    ResourceDesc& source = desc_.resources[current.resource];
+    if (source.lifetime != ResourceLifetime::transient || source.has_history) {
+        report({.code = DiagnosticCode::history_misuse,
+                .resource = source.name,
+                .message = source.has_history
+                               ? "'" + source.name + "' already has a history; use the first handle"
+                               : "'" + source.name + "' is not a transient; only transients have a history",
+                .where = where,
+                .other_where = source.where});
+        return Handle{};
+    }
+    source.has_history = true;
+    ResourceDesc history = source;
+    history.name = source.name + " (previous frame)";
+    history.lifetime = ResourceLifetime::history;
+    history.has_history = false;
+    history.history_of = current.resource;
+    history.where = where;
+    return add_resource<Handle>(std::move(history));
+}
+
+Image GraphBuilder::history_of(Image current, Where where) {
+    return add_history(current, ResourceKind::image, where);
+}
+Buffer GraphBuilder::history_of(Buffer current, Where where) {
+    return add_history(current, ResourceKind::buffer, where);
+}
+
+void GraphBuilder::share_between_queues(Image image) {
+    if (check_handle(image, ResourceKind::image, none, Where::current())) {
+        desc_.resources[image.resource].concurrent = true;
+    }
+}
+void GraphBuilder::share_between_queues(Buffer buffer) {
+    if (check_handle(buffer, ResourceKind::buffer, none, Where::current())) {
+        desc_.resources[buffer.resource].concurrent = true;
+    }
+}
+
+PassBuilder GraphBuilder::add_pass(std::string_view name, PassKind kind, Where where) {
+    const auto index = static_cast<std::uint32_t>(desc_.passes.size());
+    desc_.passes.push_back({.name = std::string(name), .kind = kind, .point = point_, .where = where});
+    callbacks_.entries_.emplace_back();
+    return {*this, index};
+}
+
+void GraphBuilder::set_injection_points(std::vector<std::string> names) {
+    desc_.points = std::move(names);
+}
+
+const ImageDesc* GraphBuilder::describe(Image image) const {
+    const bool known = image.graph == id_ && image.resource < desc_.resources.size();
+    return known ? &desc_.resources[image.resource].image : nullptr;
+}
+const BufferDesc* GraphBuilder::describe(Buffer buffer) const {
+    const bool known = buffer.graph == id_ && buffer.resource < desc_.resources.size();
+    return known ? &desc_.resources[buffer.resource].buffer : nullptr;
+}
+
+template <typename Handle>
+bool GraphBuilder::check_handle(const Handle& handle, ResourceKind kind, std::uint32_t pass, Where where) {
+    const std::string pass_name = pass == none ? "" : desc_.passes[pass].name;
+    const bool known = handle.graph == id_ && handle.resource < desc_.resources.size() &&
+                       desc_.resources[handle.resource].kind == kind &&
+                       handle.version <= latest_version_[handle.resource];
+    if (!known) {
+        report(
+            {.code = DiagnosticCode::foreign_handle,
+             .pass = pass_name,
+             .message = (pass == none ? std::string("A handle") : "Pass '" + pass_name + "' uses a handle that") +
+                        (handle.valid() ? (pass == none ? " that comes" : " comes") +
+                                              std::string(" from another graph or an earlier frame; declare it here")
+                                        : (pass == none ? " that was" : " was") +
+                                              std::string(" never initialised; create or import the resource first")),
+             .where = where,
+             .other_where = pass == none ? where : desc_.passes[pass].where});
+    }
+    return known;
+}
+
+template <typename Handle>
+void GraphBuilder::add_access(std::uint32_t pass, Handle& handle, ResourceKind kind, AccessDesc access) {
+    if (!check_handle(handle, kind, pass, access.where)) {
+        return;
+    }
+    access.pass = pass;
+    access.resource = handle.resource;
+    access.version = handle.version;
+    if (is_write(access.direction)) {
+        // A write from an overwritten version gives the version that already has a writer: validate reports both.
+        access.version = ++handle.version;
+        latest_version_[handle.resource] = std::max(latest_version_[handle.resource], handle.version);
+    }
+    desc_.accesses.push_back(access);
+}
+
+PassBuilder& PassBuilder::reads(Image image, Access access, const ImageRange& range, Where where) {
+    builder_->add_access(pass_, image, ResourceKind::image,
+                         {.access = access, .direction = Direction::read, .image_range = range, .where = where});
+    return *this;
+}
+PassBuilder& PassBuilder::reads(Buffer buffer, Access access, const BufferRange& range, Where where) {
+    builder_->add_access(pass_, buffer, ResourceKind::buffer,
+                         {.access = access, .direction = Direction::read, .buffer_range = range, .where = where});
+    return *this;
+}
+PassBuilder& PassBuilder::writes(Image& image, Access access, const ImageUse& use, Where where) {
+    builder_->add_access(pass_, image, ResourceKind::image,
+                         {.access = access,
+                          .direction = Direction::replace,
+                          .clears = use.clear.has_value(),
+                          .clear = use.clear.value_or(VkClearValue{}),
+                          .image_range = use.range,
+                          .where = where});
+    return *this;
+}
+PassBuilder& PassBuilder::writes(Buffer& buffer, Access access, const BufferRange& range, Where where) {
+    builder_->add_access(pass_, buffer, ResourceKind::buffer,
+                         {.access = access, .direction = Direction::replace, .buffer_range = range, .where = where});
+    return *this;
+}
+PassBuilder& PassBuilder::modifies(Image& image, Access access, const ImageRange& range, Where where) {
+    builder_->add_access(pass_, image, ResourceKind::image,
+                         {.access = access, .direction = Direction::modify, .image_range = range, .where = where});
+    return *this;
+}
+PassBuilder& PassBuilder::modifies(Buffer& buffer, Access access, const BufferRange& range, Where where) {
+    builder_->add_access(pass_, buffer, ResourceKind::buffer,
+                         {.access = access, .direction = Direction::modify, .buffer_range = range, .where = where});
+    return *this;
+}
+
+PassBuilder& PassBuilder::has_side_effect(std::string_view what) {
+    PassDesc& pass = builder_->desc_.passes[pass_];
+    pass.has_side_effect = true;
+    pass.side_effect = what;
+    return *this;
+}
+PassBuilder& PassBuilder::on_queue(QueueWish wish) {
+    builder_->desc_.passes[pass_].wish = wish;
+    return *this;
+}
+
+DeclaredGraph GraphBuilder::finish() {
+    // Accesses were appended in order of the calls; two pass builders in use at once interleave them.
+    const auto by_pass = [](const AccessDesc& a, const AccessDesc& b) { return a.pass < b.pass; };
+    if (!std::is_sorted(desc_.accesses.begin(), desc_.accesses.end(), by_pass)) {
+        std::stable_sort(desc_.accesses.begin(), desc_.accesses.end(), by_pass);
+    }
+    for (std::uint32_t i = 0; i < desc_.accesses.size(); ++i) {
+        PassDesc& pass = desc_.passes[desc_.accesses[i].pass];
+        if (pass.access_count++ == 0) {
+            pass.first_access = i;
+        }
+    }
+    DeclaredGraph declared{std::move(desc_), std::move(callbacks_)};
+    desc_ = {};
+    callbacks_ = {};
+    latest_version_.clear();
+    point_ = none;
+    id_ = next_identity(this, id_);
+    return declared;
+}
+
+} // namespace tyndall::rg

@@ -1,0 +1,208 @@
+// A compiled frame: plain data that says what runs where, when, in which memory, after which barriers and waits, and
+// why. Everything after compile reads it and nothing else: executing, explaining, drawing, checking.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rendergraph/graph_desc.hpp"
+
+namespace tyndall::rg {
+
+// ---- inputs of compile beside the graph --------------------------------------------------------------------------
+
+/// A logical queue of the plan.
+struct QueueInfo {
+    QueueKind kind = QueueKind::graphics;
+    std::uint32_t family = 0; ///< queue family; two logical queues of one family need no ownership transfers
+    std::uint8_t capabilities = can_graphics | can_compute | can_transfer;
+};
+/// The logical queues; the first one is the graphics queue. The executor folds them onto the device's real ones.
+struct QueueTopology {
+    std::vector<QueueInfo> queues = {QueueInfo{}};
+};
+
+/// What memory a resource needs; `alignment` a power of two.
+struct MemoryRequirement {
+    VkDeviceSize size_bytes = 0;
+    VkDeviceSize alignment = 1;
+    std::uint32_t memory_type_bits = ~0U;
+};
+struct MemoryRequirements {
+    std::vector<MemoryRequirement> of_resource; ///< by resource; imported ones are ignored
+    VkDeviceSize buffer_image_granularity = 1;  ///< VkPhysicalDeviceLimits::bufferImageGranularity
+};
+/// Requirements from formats and extents alone, for planning without a driver: tight texels, 256-byte alignment for
+/// buffers, 4 KiB for images.
+[[nodiscard]] MemoryRequirements estimate_memory(const GraphDesc& graph);
+
+/// Debug switches; each turns off one thing the compiler does.
+struct CompileOptions {
+    bool culling = true;
+    bool aliasing = true;
+    bool async = true;          ///< false: everything on the graphics queue
+    bool full_barriers = false; ///< true: every dependency waits for all commands and all memory
+};
+
+// ---- why ---------------------------------------------------------------------------------------------------------
+
+enum class KeepReason : std::uint8_t { side_effect, writes_import, writes_history, feeds_kept_pass };
+enum class CullReason : std::uint8_t {
+    no_consumer,       ///< nothing reads what it writes; `resource` names its first output
+    consumer_culled,   ///< all that read it were culled themselves; `pass` names the first
+    all_passes_culled, ///< a resource that only culled passes touch
+    never_used,        ///< a resource that no pass touches
+};
+enum class QueueReason : std::uint8_t {
+    only_queue_that_can,
+    asked_for,
+    default_graphics,
+    asked_for_but_no_such_queue,
+    async_switched_off
+};
+enum class Hazard : std::uint8_t {
+    read_after_write,
+    write_after_read,
+    write_after_write,
+    layout_change,  ///< no data hazard; the next use wants another layout
+    aliased_memory, ///< other bytes lived in this memory before; old layout UNDEFINED
+    import_entry,   ///< the host's state on the way in
+    import_exit,    ///< the host's wish on the way out
+    frame_entry,    ///< the frame before may still use this memory; the executor orders whole frames, so src is dst
+    history_rest,   ///< history is left in one layout between frames
+};
+
+[[nodiscard]] std::string_view name_of(Hazard hazard);
+
+// ---- the plan ----------------------------------------------------------------------------------------------------
+
+/// A memory dependency from a producer to a consumer over one range of one resource.
+/// Same queue: a barrier before the consumer. Different queues: the consumer's batch waits for the producer's batch,
+/// which covers memory; what remains before the consumer is a layout transition (chained to the wait) and the part that
+/// comes from its own queue (`local_*`). An ownership transfer also has its release half at the producer's batch end.
+/// `src_*` is always the whole dependency, so that folding queues onto one can use it as an ordinary barrier.
+struct Dependency {
+    std::uint32_t producer = none; ///< pass; `none`: the host, or the frame before
+    std::uint32_t consumer = none; ///< pass; `none`: the host, after the frame
+    std::uint32_t resource = none;
+    Hazard hazard = Hazard::read_after_write;
+    bool transfers_ownership = false;
+    bool discards = false; ///< the old contents are not needed; old_layout is UNDEFINED
+    ImageRange image_range = {};
+    BufferRange buffer_range = {};
+    VkPipelineStageFlags2 src_stages = 0;
+    VkAccessFlags2 src_access = 0;
+    VkPipelineStageFlags2 local_stages = 0; ///< the part of src_stages that ran on the consumer's own queue
+    VkAccessFlags2 local_access = 0;
+    VkPipelineStageFlags2 dst_stages = 0;
+    VkAccessFlags2 dst_access = 0;
+    VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< equal to new_layout where none is needed
+    VkImageLayout new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    std::uint32_t src_queue = 0; ///< logical queue; differs from dst_queue when any producer ran elsewhere
+    std::uint32_t dst_queue = 0;
+    std::uint32_t src_family = VK_QUEUE_FAMILY_IGNORED; ///< set when transfers_ownership
+    std::uint32_t dst_family = VK_QUEUE_FAMILY_IGNORED;
+    std::uint32_t alias_of = none; ///< for aliased_memory: the resource that lived there
+};
+
+/// Load and store operations of one attachment access, in order of GraphDesc::accesses.
+struct AttachmentOps {
+    std::uint32_t access = none; ///< index into GraphDesc::accesses
+    VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    VkAttachmentStoreOp store = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+};
+
+struct PlannedPass {
+    std::uint32_t pass = none; ///< index into GraphDesc::passes
+    std::uint32_t queue = 0;   ///< logical queue
+    std::uint32_t batch = 0;
+    std::uint32_t slot = 0; ///< position on its queue
+    KeepReason keep_reason = KeepReason::feeds_kept_pass;
+    std::uint32_t keep_for = none; ///< the pass (feeds_kept_pass) or resource that keeps it alive
+    QueueReason queue_reason = QueueReason::default_graphics;
+    std::uint32_t first_barrier =
+        0; ///< into Plan::dependencies: recorded before the pass, in one vkCmdPipelineBarrier2
+    std::uint32_t barrier_count = 0;
+    std::uint32_t first_attachment = 0; ///< into Plan::attachments
+    std::uint32_t attachment_count = 0;
+};
+
+struct CulledPass {
+    std::uint32_t pass = none;
+    CullReason reason = CullReason::no_consumer;
+    std::uint32_t because_of = none; ///< resource (no_consumer) or pass (consumer_culled)
+};
+struct CulledResource {
+    std::uint32_t resource = none;
+    CullReason reason = CullReason::never_used;
+};
+
+/// The consumer batch waits until `batch` has finished.
+struct BatchWait {
+    std::uint32_t batch = 0;
+    VkPipelineStageFlags2 stages = 0;      ///< of the waiting batch
+    std::uint32_t first_dependency = none; ///< one dependency that needs it, for reports; `none` for alias order
+};
+/// One submission. Batches are numbered in an order in which all waits look backward.
+struct Batch {
+    std::uint32_t queue = 0;
+    std::uint32_t first_pass = 0; ///< into Plan::passes
+    std::uint32_t pass_count = 0;
+    std::vector<BatchWait> waits; ///< of batches on other queues
+    /// Into Plan::dependencies: recorded at the end, in one vkCmdPipelineBarrier2. Release halves of ownership
+    /// transfers (they have a consumer whose barriers hold the acquire half; dropped where both queues fold onto one),
+    /// and whole dependencies that serve readers on several queues at once (consumer is the first of them; never
+    /// dropped).
+    std::vector<std::uint32_t> releases;
+    std::vector<std::uint32_t> waits_imports;   ///< resources whose host semaphore it waits for
+    std::vector<std::uint32_t> signals_imports; ///< resources whose host semaphore it signals
+    bool signals = false;                       ///< some other batch waits for it
+};
+
+enum class PlacementKind : std::uint8_t {
+    unplaced, ///< culled or imported
+    heap,     ///< at `offset_bytes` of heap `heap`
+    history,  ///< two copies that swap roles each frame, outside the heaps
+};
+struct Placement {
+    PlacementKind kind = PlacementKind::unplaced;
+    std::uint32_t heap = none;
+    VkDeviceSize offset_bytes = 0;
+    VkDeviceSize size_bytes = 0;
+    VkImageUsageFlags image_usage = 0;
+    VkBufferUsageFlags buffer_usage = 0;
+    bool concurrent = false;             ///< shared by several queue families at once
+    std::vector<std::uint32_t> families; ///< that use it, when concurrent
+    std::uint32_t shares_with = none;    ///< a resource whose bytes it takes over, `none` if it has them alone
+    VkImageLayout resting_layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< history: of both copies between frames
+};
+struct Heap {
+    std::uint32_t memory_type_bits = ~0U;
+    VkDeviceSize size_bytes = 0;
+};
+
+struct PlanStatistics {
+    VkDeviceSize transient_bytes = 0;           ///< sum of heaps
+    VkDeviceSize transient_bytes_unaliased = 0; ///< what it would be without sharing
+    VkDeviceSize largest_live_set_bytes = 0;    ///< lower bound: mutually unordered resources at one slot
+    std::uint32_t barrier_count = 0;            ///< Dependency records before passes
+    std::uint32_t wait_count = 0;
+};
+
+struct Plan {
+    QueueTopology topology;
+    std::vector<PlannedPass> passes; ///< in submission order; a topological order over all queues
+    std::vector<Batch> batches;
+    std::vector<Dependency> dependencies; ///< grouped by consumer; those of the host (exit) last
+    std::vector<AttachmentOps> attachments;
+    std::vector<Placement> placements; ///< by resource
+    std::vector<Heap> heaps;
+    std::vector<CulledPass> culled_passes;
+    std::vector<CulledResource> culled_resources;
+    std::uint32_t first_exit_barrier = 0; ///< into dependencies: after the last pass (import exits)
+    std::uint32_t exit_barrier_count = 0;
+    PlanStatistics statistics;
+};
+
+} // namespace tyndall::rg

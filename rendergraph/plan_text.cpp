@@ -1,0 +1,233 @@
+#include "rendergraph/plan_text.hpp"
+
+namespace tyndall::rg {
+namespace {
+
+std::string quoted(const std::string& name) {
+    return "'" + name + "'";
+}
+
+std::string pass_name(const GraphDesc& graph, std::uint32_t pass) {
+    return pass == none ? std::string("the host") : quoted(graph.passes[pass].name);
+}
+
+struct Bit {
+    std::uint64_t bit;
+    const char* name;
+};
+
+constexpr Bit stage_bits[] = {
+    {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, "indirect"},
+    {VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, "index input"},
+    {VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, "vertex input"},
+    {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex"},
+    {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "fragment"},
+    {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "early tests"},
+    {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "late tests"},
+    {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "color output"},
+    {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "compute"},
+    {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"},
+    {VK_PIPELINE_STAGE_2_HOST_BIT, "host"},
+    {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, "all commands"},
+    {VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR, "acceleration structure build"},
+    {VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR, "ray tracing"},
+};
+constexpr Bit access_bits[] = {
+    {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, "indirect read"},
+    {VK_ACCESS_2_INDEX_READ_BIT, "index read"},
+    {VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT, "vertex read"},
+    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
+    {VK_ACCESS_2_SHADER_READ_BIT, "shader read"},
+    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"},
+    {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"},
+    {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
+    {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, "color read"},
+    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "color write"},
+    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "depth read"},
+    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
+    {VK_ACCESS_2_TRANSFER_READ_BIT, "transfer read"},
+    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "transfer write"},
+    {VK_ACCESS_2_HOST_READ_BIT, "host read"},
+    {VK_ACCESS_2_HOST_WRITE_BIT, "host write"},
+    {VK_ACCESS_2_MEMORY_READ_BIT, "memory read"},
+    {VK_ACCESS_2_MEMORY_WRITE_BIT, "memory write"},
+};
+
+template <std::size_t N>
+std::string bits(const Bit (&table)[N], std::uint64_t mask) {
+    std::string text;
+    for (const Bit& entry : table) {
+        if ((mask & entry.bit) == entry.bit) {
+            text += (text.empty() ? "" : "|") + std::string(entry.name);
+            mask &= ~entry.bit;
+        }
+    }
+    if (mask != 0) {
+        text += (text.empty() ? "" : "|") + std::to_string(mask);
+    }
+    return text.empty() ? "none" : text;
+}
+
+std::string layout_name(VkImageLayout layout) {
+    switch (layout) {
+    case VK_IMAGE_LAYOUT_UNDEFINED: return "undefined";
+    case VK_IMAGE_LAYOUT_GENERAL: return "general";
+    case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL: return "color attachment";
+    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL: return "depth attachment";
+    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL: return "depth read-only";
+    case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL: return "shader read-only";
+    case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL: return "transfer source";
+    case VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL: return "transfer destination";
+    case VK_IMAGE_LAYOUT_PRESENT_SRC_KHR: return "present";
+    default: return std::to_string(layout);
+    }
+}
+
+std::string range_text(const GraphDesc& graph, const Dependency& d) {
+    const ResourceDesc& resource = graph.resources[d.resource];
+    if (resource.kind == ResourceKind::buffer) {
+        return d.buffer_range == BufferRange{}
+                   ? ""
+                   : " bytes " + std::to_string(d.buffer_range.offset) + "+" + std::to_string(d.buffer_range.size);
+    }
+    if (d.image_range == ImageRange{}) {
+        return "";
+    }
+    return " mips " + std::to_string(d.image_range.base_mip) + "+" + std::to_string(d.image_range.mip_count) +
+           " layers " + std::to_string(d.image_range.base_layer) + "+" + std::to_string(d.image_range.layer_count);
+}
+
+std::string queue_name(const Plan& plan, std::uint32_t queue) {
+    return std::string(name_of(plan.topology.queues[queue].kind));
+}
+
+} // namespace
+
+std::string_view name_of(Hazard hazard) {
+    switch (hazard) {
+    case Hazard::read_after_write: return "read after write";
+    case Hazard::write_after_read: return "write after read";
+    case Hazard::write_after_write: return "write after write";
+    case Hazard::layout_change: return "layout change";
+    case Hazard::aliased_memory: return "aliased memory";
+    case Hazard::import_entry: return "import entry";
+    case Hazard::import_exit: return "import exit";
+    case Hazard::frame_entry: return "frame entry";
+    case Hazard::history_rest: return "history rest";
+    }
+    return "";
+}
+
+std::string why_kept(const GraphDesc& graph, const PlannedPass& pass) {
+    switch (pass.keep_reason) {
+    case KeepReason::side_effect: return "side effect: " + graph.passes[pass.pass].side_effect;
+    case KeepReason::writes_import: return "writes " + quoted(graph.resources[pass.keep_for].name) + " for the host";
+    case KeepReason::writes_history:
+        return "writes " + quoted(graph.resources[pass.keep_for].name) + " for the next frame";
+    case KeepReason::feeds_kept_pass:
+        return pass.keep_for == none ? "culling is switched off" : "feeds " + pass_name(graph, pass.keep_for);
+    }
+    return "";
+}
+
+std::string why_culled(const GraphDesc& graph, const CulledPass& pass) {
+    switch (pass.reason) {
+    case CullReason::no_consumer:
+        return pass.because_of == none ? "it writes nothing and has no side effect"
+                                       : "nothing reads " + quoted(graph.resources[pass.because_of].name);
+    case CullReason::consumer_culled: return "its consumer " + pass_name(graph, pass.because_of) + " is left out";
+    case CullReason::all_passes_culled: return "all passes that touch it are left out";
+    case CullReason::never_used: return "no pass touches it";
+    }
+    return "";
+}
+
+std::string why_queue(const PlannedPass& pass) {
+    switch (pass.queue_reason) {
+    case QueueReason::only_queue_that_can: return "only the graphics queue can";
+    case QueueReason::asked_for: return "asked for";
+    case QueueReason::default_graphics: return "no other queue asked for";
+    case QueueReason::asked_for_but_no_such_queue: return "another queue asked for, but there is none";
+    case QueueReason::async_switched_off: return "asynchronous queues are switched off";
+    }
+    return "";
+}
+
+std::string describe(const GraphDesc& graph, const Dependency& d) {
+    std::string text =
+        std::string(name_of(d.hazard)) + " of " + quoted(graph.resources[d.resource].name) + range_text(graph, d);
+    if (d.producer != none) {
+        text += " after " + pass_name(graph, d.producer);
+    }
+    if (d.alias_of != none) {
+        text += ", in the memory of " + quoted(graph.resources[d.alias_of].name);
+    }
+    text += ": " + bits(stage_bits, d.src_stages) + " (" + bits(access_bits, d.src_access) + ") -> " +
+            bits(stage_bits, d.dst_stages) + " (" + bits(access_bits, d.dst_access) + ")";
+    if (d.old_layout != d.new_layout) {
+        text += ", " + layout_name(d.old_layout) + " -> " + layout_name(d.new_layout);
+    }
+    if (d.src_queue != d.dst_queue) {
+        text += d.transfers_ownership ? ", ownership between families" : ", across queues";
+    }
+    return text;
+}
+
+std::string to_text(const GraphDesc& graph, const Plan& plan) {
+    std::string text;
+    for (std::uint32_t b = 0; b < plan.batches.size(); ++b) {
+        const Batch& batch = plan.batches[b];
+        text += "batch " + std::to_string(b) + " on " + queue_name(plan, batch.queue);
+        for (const BatchWait& wait : batch.waits) {
+            text += ", waits for batch " + std::to_string(wait.batch);
+        }
+        for (const std::uint32_t resource : batch.waits_imports) {
+            text += ", waits for the host's semaphore of " + quoted(graph.resources[resource].name);
+        }
+        text += "\n";
+        for (std::uint32_t i = batch.first_pass; i < batch.first_pass + batch.pass_count; ++i) {
+            const PlannedPass& planned = plan.passes[i];
+            for (std::uint32_t d = planned.first_barrier; d < planned.first_barrier + planned.barrier_count; ++d) {
+                text += "    " + describe(graph, plan.dependencies[d]) + "\n";
+            }
+            text += "  " + graph.passes[planned.pass].name + "  [" + why_kept(graph, planned) + "]\n";
+        }
+        for (const std::uint32_t d : batch.releases) {
+            text += "    at the end: " + describe(graph, plan.dependencies[d]) + "\n";
+        }
+        for (const std::uint32_t resource : batch.signals_imports) {
+            text += "    signals the host's semaphore of " + quoted(graph.resources[resource].name) + "\n";
+        }
+    }
+    for (std::uint32_t d = plan.first_exit_barrier; d < plan.first_exit_barrier + plan.exit_barrier_count; ++d) {
+        text += "leaving: " + describe(graph, plan.dependencies[d]) + "\n";
+    }
+    for (const CulledPass& pass : plan.culled_passes) {
+        text += "left out: " + graph.passes[pass.pass].name + ", " + why_culled(graph, pass) + "\n";
+    }
+    for (const CulledResource& resource : plan.culled_resources) {
+        text += "not created: " + graph.resources[resource.resource].name + ", " +
+                (resource.reason == CullReason::never_used ? "no pass touches it"
+                                                           : "only passes that are left out touch it") +
+                "\n";
+    }
+    for (std::uint32_t r = 0; r < plan.placements.size(); ++r) {
+        const Placement& placement = plan.placements[r];
+        if (placement.kind == PlacementKind::heap) {
+            text += "memory: " + graph.resources[r].name + " at " + std::to_string(placement.offset_bytes) + "+" +
+                    std::to_string(placement.size_bytes) + " of heap " + std::to_string(placement.heap);
+            if (placement.shares_with != none) {
+                text += ", after " + quoted(graph.resources[placement.shares_with].name);
+            }
+            text += placement.concurrent ? ", concurrent\n" : "\n";
+        } else if (placement.kind == PlacementKind::history) {
+            text += "memory: " + graph.resources[r].name + ", one of two copies that swap each frame\n";
+        }
+    }
+    text += "transient bytes " + std::to_string(plan.statistics.transient_bytes) + ", without sharing " +
+            std::to_string(plan.statistics.transient_bytes_unaliased) + ", largest live set " +
+            std::to_string(plan.statistics.largest_live_set_bytes) + "\n";
+    return text;
+}
+
+} // namespace tyndall::rg

@@ -1,0 +1,170 @@
+// The stages of compile, in order of use: each a pure function from input structs to an output struct. Internal.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rendergraph/plan.hpp"
+
+namespace tyndall::rg::stages {
+
+// ---- ranges: every access in concrete cells ----------------------------------------------------------------------
+
+/// A resource is cut into cells, the smallest parts that its accesses tell apart: one cell if all accesses cover all of
+/// it, else one a subresource (image) or one an interval between range boundaries (buffer).
+struct CellRange {
+    std::uint32_t first_mip = 0, mip_count = 1;     ///< buffers: mip 0, count 1
+    std::uint32_t first_layer = 0, layer_count = 1; ///< buffers: intervals
+};
+struct ResourceCells {
+    std::uint32_t mips = 1;
+    std::uint32_t layers = 1;                  ///< buffers: number of intervals
+    bool whole = true;                         ///< one cell stands for everything
+    std::vector<VkDeviceSize> boundaries = {}; ///< buffers cut into intervals: layers + 1 offsets
+    [[nodiscard]] std::uint32_t count() const { return whole ? 1 : mips * layers; }
+};
+struct Cells {
+    std::vector<ResourceCells> of_resource;
+    std::vector<CellRange> of_access;
+};
+/// Calls `f(cell index)` for every cell of the range.
+template <typename F>
+void for_each_cell(const ResourceCells& resource, const CellRange& range, F&& f) {
+    if (resource.whole) {
+        f(0U);
+        return;
+    }
+    for (std::uint32_t mip = range.first_mip; mip < range.first_mip + range.mip_count; ++mip) {
+        for (std::uint32_t layer = range.first_layer; layer < range.first_layer + range.layer_count; ++layer) {
+            f(mip * resource.layers + layer);
+        }
+    }
+}
+/// Requires ranges inside their resources (validate). O(accesses log accesses).
+[[nodiscard]] Cells cut_into_cells(const GraphDesc& graph);
+
+// ---- flow: who needs what of whom --------------------------------------------------------------------------------
+
+struct Edge {
+    std::uint32_t from = none; ///< pass
+    std::uint32_t to = none;   ///< pass
+    std::uint32_t resource = none;
+    Hazard hazard = Hazard::read_after_write;
+};
+struct Flow {
+    std::vector<Edge> edges; ///< sorted by (to, from), unique per (to, from, hazard is read_after_write)
+    std::vector<std::uint32_t> last_writers; ///< passes whose writes stand at the frame's end, of imports and histories
+    std::vector<std::uint32_t> last_writer_resource; ///< the resource, parallel to last_writers
+    Diagnostics errors;                              ///< reads of something never written, two writers of one version
+};
+/// Follows versions, not the order of declaration. With `kept`, passes that it does not mark do not exist, so that what
+/// was ordered through a culled pass is ordered directly. O(accesses x cells of each).
+[[nodiscard]] Flow follow_versions(const GraphDesc& graph, const Cells& cells, const std::vector<bool>* kept = nullptr);
+
+// ---- validate ----------------------------------------------------------------------------------------------------
+
+/// Everything that can be said about single passes, accesses and resources.
+[[nodiscard]] Diagnostics validate(const GraphDesc& graph, const QueueTopology& topology);
+
+// ---- order -------------------------------------------------------------------------------------------------------
+
+struct Order {
+    std::vector<std::uint32_t> passes; ///< all of them, topological; ties by declaration
+    Diagnostics errors;                ///< cycles
+};
+/// Kahn's algorithm with the smallest declaration index first. O((passes + edges) log passes).
+[[nodiscard]] Order order_passes(const GraphDesc& graph, const Flow& flow);
+
+// ---- cull --------------------------------------------------------------------------------------------------------
+
+struct Kept {
+    std::vector<bool> pass; ///< by pass
+    std::vector<KeepReason> reason;
+    std::vector<std::uint32_t> keeps_for;
+    std::vector<CulledPass> culled_passes;
+    std::vector<CulledResource> culled_resources;
+};
+/// Reachability backward along read-after-write edges from side effects, imports with a final state, and histories.
+[[nodiscard]] Kept cull(const GraphDesc& graph, const Flow& flow, const Order& order, bool enabled);
+
+// ---- schedule ----------------------------------------------------------------------------------------------------
+
+/// All uses of one resource by one pass of the plan, merged per cell range that they share.
+struct Use {
+    std::uint32_t slot = 0; ///< into Schedule::order
+    std::uint32_t pass = none;
+    std::uint32_t resource = none;
+    std::uint32_t queue = 0;
+    CellRange cells;
+    AccessScope scope;
+    bool reads = false;
+    bool writes = false;
+};
+struct QueueWait {
+    std::uint32_t slot = 0;     ///< the waiting pass
+    std::uint32_t producer = 0; ///< slot waited for
+};
+struct Schedule {
+    std::vector<std::uint32_t> order;    ///< kept passes in submission order
+    std::vector<std::uint32_t> slot_of;  ///< by pass, `none` if culled
+    std::vector<std::uint32_t> queue;    ///< by slot
+    std::vector<std::uint32_t> position; ///< by slot: place on its queue
+    std::vector<QueueReason> queue_reason;
+    std::vector<Use> uses;                ///< grouped by resource, in slot order
+    std::vector<std::uint32_t> first_use; ///< by resource, resources + 1 entries into `uses`
+    std::vector<bool> concurrent;         ///< by resource: shared by families at once
+    std::vector<QueueWait> waits;         ///< transitively reduced, in slot order
+    std::vector<std::uint32_t> clocks;    ///< slots x queues: passes of each queue that happen before or at the slot
+    std::uint32_t queue_count = 1;
+
+    [[nodiscard]] bool happens_before(std::uint32_t slot_a, std::uint32_t slot_b) const {
+        return slot_a != slot_b && clocks[slot_b * queue_count + queue[slot_a]] > position[slot_a];
+    }
+};
+/// Assigns queues and derives the waits between them with vector clocks. O((passes + edges) x queues).
+[[nodiscard]] Schedule schedule(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells,
+                                const Flow& flow, const Order& order, const Kept& kept, bool async);
+
+// ---- memory ------------------------------------------------------------------------------------------------------
+
+struct Memory {
+    std::vector<Placement> placements;
+    std::vector<Heap> heaps;
+    VkDeviceSize unaliased_bytes = 0;
+    VkDeviceSize largest_live_set_bytes = 0;
+    /// By resource: those whose bytes it takes over (all whose accesses happen before its own and that overlap it).
+    std::vector<std::vector<std::uint32_t>> takes_over;
+};
+/// Two resources may share bytes only if every access of one happens before every access of the other in the schedule's
+/// partial order. Size-descending, best-fitting gap. O(resources^2).
+[[nodiscard]] Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedule& schedule,
+                           const MemoryRequirements& requirements, bool aliasing);
+
+// ---- batch -------------------------------------------------------------------------------------------------------
+
+struct Batches {
+    std::vector<Batch> batches;          ///< passes index `order`
+    std::vector<std::uint32_t> order;    ///< slots in submission order: batch by batch
+    std::vector<std::uint32_t> batch_of; ///< by slot
+};
+/// A batch ends after a pass that another queue waits for and begins before a pass that waits.
+[[nodiscard]] Batches make_batches(const GraphDesc& graph, const Schedule& schedule);
+
+// ---- synchronise -------------------------------------------------------------------------------------------------
+
+struct Synchronised {
+    std::vector<Dependency> dependencies;     ///< grouped by the consumer's slot, exits last
+    std::vector<std::uint32_t> first_of_slot; ///< slots + 1 entries
+    std::uint32_t first_exit = 0;
+    std::vector<std::vector<std::uint32_t>> releases; ///< by batch, into dependencies
+    std::vector<AttachmentOps> attachments;           ///< grouped by slot
+    std::vector<std::uint32_t> first_attachment;      ///< slots + 1 entries
+    std::vector<VkImageLayout> resting_layout;        ///< by resource, for histories
+};
+/// Walks each resource's uses in schedule order, cell by cell; reads that want the same layout share one dependency.
+[[nodiscard]] Synchronised synchronise(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells,
+                                       const Schedule& schedule, const Memory& memory, const Batches& batches,
+                                       bool full_barriers);
+
+} // namespace tyndall::rg::stages

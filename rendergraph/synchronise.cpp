@@ -1,0 +1,543 @@
+// Barriers, transitions and ownership transfers.
+// In: each resource's uses in schedule order, and the waits already decided. Out: dependencies by consumer. Invariant:
+// every hazard between two uses of a cell has a path of dependencies and waits with availability and visibility.
+// O(uses x cells of each).
+//
+// Uses of a cell fall into groups: one write, or reads in one layout. Between two groups there is one dependency a
+// queue, before the first use there, with the masks of all the group's uses on that queue: reads are merged.
+#include <algorithm>
+
+#include "rendergraph/stages.hpp"
+
+namespace tyndall::rg::stages {
+namespace {
+
+constexpr VkAccessFlags2 any_write = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
+                                     VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR |
+                                     VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
+
+struct Group {
+    std::vector<const Use*> uses;
+    bool writes = false;
+    bool discards = false; ///< a write that does not read
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+/// What came before a group: other uses, or the state on the way in.
+struct Before {
+    std::vector<const Use*> uses;
+    VkPipelineStageFlags2 host_stages = 0; ///< imports: the host's last use
+    VkAccessFlags2 host_access = 0;
+    std::uint32_t host_family = VK_QUEUE_FAMILY_IGNORED;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    Hazard entry = Hazard::frame_entry;
+    bool in_frame = false; ///< `uses` are of this very resource
+    bool content = true;   ///< there is content that a transition must keep
+    std::uint32_t alias_of = none;
+};
+
+struct CellDependency {
+    Dependency dependency;
+    std::uint32_t slot; ///< of the consumer, the number of slots for exits
+    std::uint32_t release_batch = none;
+    bool only_at_release = false; ///< recorded at the end of release_batch and nowhere else
+    std::vector<std::uint32_t> cells;
+};
+
+bool same_but_range(const Dependency& a, const Dependency& b) {
+    return a.producer == b.producer && a.consumer == b.consumer && a.hazard == b.hazard &&
+           a.transfers_ownership == b.transfers_ownership && a.discards == b.discards && a.src_stages == b.src_stages &&
+           a.src_access == b.src_access && a.local_stages == b.local_stages && a.local_access == b.local_access &&
+           a.dst_stages == b.dst_stages && a.dst_access == b.dst_access && a.old_layout == b.old_layout &&
+           a.new_layout == b.new_layout && a.src_queue == b.src_queue && a.dst_queue == b.dst_queue;
+}
+
+class Synchroniser {
+public:
+    Synchroniser(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells, const Schedule& schedule,
+                 const Memory& memory, const Batches& batches, bool full_barriers)
+        : graph_(graph), topology_(topology), cells_(cells), schedule_(schedule), memory_(memory), batches_(batches),
+          full_barriers_(full_barriers), exit_slot_(static_cast<std::uint32_t>(schedule.order.size())) {}
+
+    Synchronised run() {
+        out_.resting_layout.assign(graph_.resources.size(), VK_IMAGE_LAYOUT_UNDEFINED);
+        out_.releases.resize(batches_.batches.size());
+        stored_.assign(graph_.accesses.size(), false);
+        decide_resting_layouts();
+        for (std::uint32_t resource = 0; resource < graph_.resources.size(); ++resource) {
+            visit(resource);
+        }
+        collect();
+        attachments();
+        return std::move(out_);
+    }
+
+private:
+    std::span<const Use> uses_of(std::uint32_t resource) const {
+        return {schedule_.uses.data() + schedule_.first_use[resource],
+                schedule_.first_use[resource + 1] - schedule_.first_use[resource]};
+    }
+
+    /// Between frames both copies of a history rest in the layout of its first reader, so that steady frames need no
+    /// transition before they read it.
+    void decide_resting_layouts() {
+        for (std::uint32_t resource = 0; resource < graph_.resources.size(); ++resource) {
+            const std::uint32_t current = graph_.resources[resource].history_of;
+            if (current == none || graph_.resources[resource].kind != ResourceKind::image) {
+                continue;
+            }
+            const std::span<const Use> readers = uses_of(resource);
+            const std::span<const Use> writers = uses_of(current);
+            const VkImageLayout layout = !readers.empty()   ? readers.front().scope.layout
+                                         : !writers.empty() ? writers.back().scope.layout
+                                                            : VK_IMAGE_LAYOUT_GENERAL;
+            out_.resting_layout[resource] = layout;
+            out_.resting_layout[current] = layout;
+        }
+    }
+
+    Before state_on_the_way_in(std::uint32_t resource) const {
+        const ResourceDesc& desc = graph_.resources[resource];
+        Before before;
+        if (desc.lifetime == ResourceLifetime::imported) {
+            const ImportDesc& import = graph_.imports[desc.import];
+            before.entry = Hazard::import_entry;
+            before.layout = import.initial_layout;
+            before.host_stages = import.initial_stages;
+            before.host_access = import.initial_access;
+            before.host_family = import.initial_family;
+            before.content = desc.kind == ResourceKind::buffer || import.initial_layout != VK_IMAGE_LAYOUT_UNDEFINED;
+        } else if (desc.lifetime == ResourceLifetime::history) {
+            before.layout = out_.resting_layout[resource];
+        } else {
+            before.content = false;
+            for (const std::uint32_t other : memory_.takes_over[resource]) {
+                before.entry = Hazard::aliased_memory;
+                before.alias_of = before.alias_of == none ? other : before.alias_of;
+                for (const Use& use : uses_of(other)) {
+                    before.uses.push_back(&use);
+                }
+            }
+        }
+        return before;
+    }
+
+    void visit(std::uint32_t resource) {
+        const std::span<const Use> uses = uses_of(resource);
+        if (uses.empty()) {
+            return;
+        }
+        found_.clear();
+        const ResourceCells& of = cells_.of_resource[resource];
+        std::vector<std::vector<const Use*>> cell_uses(of.count());
+        for (const Use& use : uses) {
+            for_each_cell(of, use.cells, [&](std::uint32_t cell) { cell_uses[cell].push_back(&use); });
+        }
+        const Before entry = state_on_the_way_in(resource);
+        for (std::uint32_t cell = 0; cell < of.count(); ++cell) {
+            visit_cell(resource, cell, group(cell_uses[cell]), entry);
+        }
+        for (CellDependency& found : found_) {
+            add_ranges(resource, found);
+        }
+    }
+
+    static std::vector<Group> group(const std::vector<const Use*>& uses) {
+        std::vector<Group> groups;
+        for (const Use* use : uses) {
+            const bool joins =
+                !groups.empty() && !use->writes && !groups.back().writes && groups.back().layout == use->scope.layout;
+            if (!joins) {
+                groups.push_back({{}, use->writes, use->writes && !use->reads, use->scope.layout});
+            }
+            groups.back().uses.push_back(use);
+        }
+        return groups;
+    }
+
+    void visit_cell(std::uint32_t resource, std::uint32_t cell, const std::vector<Group>& groups, const Before& entry) {
+        Before before = entry;
+        for (std::size_t g = 0; g < groups.size(); ++g) {
+            connect(resource, cell, before, groups[g]);
+            const bool needed_later = g + 1 < groups.size() ? !groups[g + 1].discards : leaves_frame(resource);
+            if (groups[g].writes && needed_later) {
+                mark_stored(resource, *groups[g].uses.front());
+            }
+            before = Before{};
+            before.uses = groups[g].uses;
+            before.layout = groups[g].layout;
+            before.in_frame = true;
+        }
+        if (!groups.empty()) {
+            leave(resource, cell, before);
+        }
+    }
+
+    [[nodiscard]] bool leaves_frame(std::uint32_t resource) const {
+        const ResourceDesc& desc = graph_.resources[resource];
+        return desc.has_history || desc.lifetime == ResourceLifetime::imported;
+    }
+
+    void mark_stored(std::uint32_t resource, const Use& use) {
+        const PassDesc& pass = graph_.passes[use.pass];
+        for (std::uint32_t i = pass.first_access; i < pass.first_access + pass.access_count; ++i) {
+            stored_[i] = stored_[i] || graph_.accesses[i].resource == resource;
+        }
+    }
+
+    /// All dependencies between `before` and `group`, one for each queue of the group.
+    void connect(std::uint32_t resource, std::uint32_t cell, const Before& before, const Group& group) {
+        const bool is_image = graph_.resources[resource].kind == ResourceKind::image;
+        const bool transition = is_image && before.layout != group.layout;
+        const bool spans = std::any_of(group.uses.begin(), group.uses.end(),
+                                       [&](const Use* use) { return use->queue != group.uses.front()->queue; });
+        if (spans && before.in_frame && before.uses.front()->writes) {
+            connect_readers_of_writer(resource, cell, before, group, transition);
+            return;
+        }
+        const Use& leader = *group.uses.front();
+        emit(resource, cell, before, group, leader, transition);
+        if (spans) {
+            // The leader made the transition, or waited for the host; the others are ordered after it.
+            Before after_leader;
+            after_leader.uses = {&leader};
+            after_leader.layout = group.layout;
+            after_leader.in_frame = true;
+            for_first_on_other_queues(group, leader.queue, [&](const Use& use) {
+                if (transition) {
+                    emit(resource, cell, after_leader, group, use, false);
+                }
+            });
+        }
+    }
+
+    /// A writer before readers on several queues. Without a transition each queue has a dependency of its own. With
+    /// one, the writer's queue does it: before its own first reader if that shares the writer's batch, else at the
+    /// batch's end.
+    void connect_readers_of_writer(std::uint32_t resource, std::uint32_t cell, const Before& before, const Group& group,
+                                   bool transition) {
+        const Use& writer = *before.uses.front();
+        if (!transition) {
+            for_first_on_other_queues(group, none,
+                                      [&](const Use& use) { emit(resource, cell, before, group, use, false); });
+            return;
+        }
+        const auto local = std::find_if(group.uses.begin(), group.uses.end(),
+                                        [&](const Use* use) { return use->queue == writer.queue; });
+        const bool same_batch =
+            local != group.uses.end() && batches_.batch_of[(*local)->slot] == batches_.batch_of[writer.slot];
+        Before after = before;
+        if (same_batch) {
+            emit(resource, cell, before, group, **local, true);
+            after.uses = {*local};
+        } else {
+            CellDependency made = build(resource, before, group, *group.uses.front(), true);
+            Dependency& d = made.dependency;
+            d.dst_queue = d.src_queue = writer.queue;
+            d.local_stages = d.src_stages;
+            d.local_access = d.src_access;
+            d.dst_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+            d.dst_access = VK_ACCESS_2_MEMORY_READ_BIT;
+            made.release_batch = batches_.batch_of[writer.slot];
+            made.only_at_release = true;
+            record(std::move(made), cell);
+            return;
+        }
+        for_first_on_other_queues(group, writer.queue,
+                                  [&](const Use& use) { emit(resource, cell, after, group, use, false); });
+    }
+
+    template <typename F>
+    void for_first_on_other_queues(const Group& group, std::uint32_t except, F&& f) const {
+        for (std::uint32_t queue = 0; queue < schedule_.queue_count; ++queue) {
+            const auto first =
+                std::find_if(group.uses.begin(), group.uses.end(), [&](const Use* use) { return use->queue == queue; });
+            if (queue != except && first != group.uses.end()) {
+                f(**first);
+            }
+        }
+    }
+
+    CellDependency build(std::uint32_t resource, const Before& before, const Group& group, const Use& consumer,
+                         bool transition) const {
+        CellDependency made{{}, consumer.slot, none, false, {}};
+        Dependency& d = made.dependency;
+        d.resource = resource;
+        d.consumer = consumer.pass;
+        d.src_queue = d.dst_queue = consumer.queue;
+        for (const Use* use : group.uses) {
+            if (use->queue == consumer.queue) {
+                d.dst_stages |= use->scope.stages;
+                d.dst_access |= use->scope.access;
+            }
+        }
+        add_sources(d, before, consumer.queue);
+        d.new_layout = group.layout;
+        d.old_layout = !transition                         ? group.layout
+                       : group.discards || !before.content ? VK_IMAGE_LAYOUT_UNDEFINED
+                                                           : before.layout;
+        d.discards = group.discards || !before.content;
+        d.alias_of = before.alias_of;
+        d.hazard = hazard_of(before, group);
+        set_ownership(d, made, resource, before, topology_.queues[consumer.queue].family);
+        if (before.uses.empty() && d.src_stages == 0) {
+            // Whole frames are ordered by the executor, hosts' uses by a semaphore or by submission: what remains is a
+            // transition, chained to that by its own stages.
+            d.src_stages = d.local_stages = d.dst_stages;
+        }
+        return made;
+    }
+
+    void add_sources(Dependency& d, const Before& before, std::uint32_t consumer_queue) const {
+        d.src_stages = before.host_stages;
+        d.src_access = before.host_access & any_write;
+        d.local_stages = d.src_stages;
+        d.local_access = d.src_access;
+        std::uint32_t last_slot = 0;
+        for (const Use* use : before.uses) {
+            const VkAccessFlags2 written = use->writes ? use->scope.access & any_write : VkAccessFlags2{0};
+            d.src_stages |= use->scope.stages;
+            d.src_access |= written;
+            if (use->queue == consumer_queue) {
+                d.local_stages |= use->scope.stages;
+                d.local_access |= written;
+            } else {
+                d.src_queue = use->queue;
+            }
+            if (d.producer == none || use->slot >= last_slot) {
+                last_slot = use->slot;
+                d.producer = use->pass;
+            }
+        }
+    }
+
+    static Hazard hazard_of(const Before& before, const Group& group) {
+        if (!before.in_frame) {
+            return before.entry;
+        }
+        const bool after_write = before.uses.front()->writes;
+        if (group.writes) {
+            return !after_write     ? Hazard::write_after_read
+                   : group.discards ? Hazard::write_after_write
+                                    : Hazard::read_after_write;
+        }
+        return after_write ? Hazard::read_after_write : Hazard::layout_change;
+    }
+
+    /// EXCLUSIVE resources whose content crosses families are released by the last use and acquired by the next.
+    void set_ownership(Dependency& d, CellDependency& made, std::uint32_t resource, const Before& before,
+                       std::uint32_t family) const {
+        if (schedule_.concurrent[resource] || d.discards) {
+            return;
+        }
+        std::uint32_t owner = before.host_family;
+        if (before.in_frame) {
+            owner = topology_.queues[before.uses.back()->queue].family;
+            made.release_batch = batches_.batch_of[before.uses.back()->slot];
+        }
+        if (owner == VK_QUEUE_FAMILY_IGNORED || owner == family) {
+            made.release_batch = none;
+            return;
+        }
+        d.transfers_ownership = true;
+        d.src_family = owner;
+        d.dst_family = family;
+    }
+
+    void emit(std::uint32_t resource, std::uint32_t cell, const Before& before, const Group& group, const Use& consumer,
+              bool transition) {
+        CellDependency made = build(resource, before, group, consumer, transition);
+        const bool nothing_before = before.uses.empty() && before.host_stages == 0;
+        if (nothing_before && !transition && !made.dependency.transfers_ownership) {
+            return;
+        }
+        record(std::move(made), cell);
+    }
+
+    void leave(std::uint32_t resource, std::uint32_t cell, const Before& before) {
+        const ResourceDesc& desc = graph_.resources[resource];
+        Group after;
+        std::uint32_t family = VK_QUEUE_FAMILY_IGNORED;
+        const Use& last = *before.uses.back();
+        VkPipelineStageFlags2 stages = 0;
+        VkAccessFlags2 access = 0;
+        Hazard hazard = Hazard::import_exit;
+        if (desc.import != none && graph_.imports[desc.import].has_final) {
+            const ImportDesc& import = graph_.imports[desc.import];
+            after.layout = import.final_layout;
+            stages = import.final_stages;
+            access = import.final_access;
+            family = import.final_family;
+        } else if (desc.has_history && desc.kind == ResourceKind::image) {
+            after.layout = out_.resting_layout[resource];
+            hazard = Hazard::history_rest;
+        } else {
+            return;
+        }
+        const bool transition = desc.kind == ResourceKind::image && after.layout != VK_IMAGE_LAYOUT_UNDEFINED &&
+                                after.layout != before.layout;
+        const std::uint32_t own_family = topology_.queues[last.queue].family;
+        const bool transfers =
+            family != VK_QUEUE_FAMILY_IGNORED && family != own_family && !schedule_.concurrent[resource];
+        if (!transition && stages == 0 && !transfers) {
+            return;
+        }
+        CellDependency made{{}, exit_slot_, none, false, {}};
+        Dependency& d = made.dependency;
+        d.resource = resource;
+        d.hazard = hazard;
+        d.src_queue = d.dst_queue = last.queue;
+        add_sources(d, before, last.queue);
+        d.src_queue = last.queue; // the others are ordered before the last use
+        d.dst_stages = stages;
+        d.dst_access = access;
+        d.old_layout = before.layout;
+        d.new_layout = transition ? after.layout : before.layout;
+        d.transfers_ownership = transfers;
+        d.src_family = transfers ? own_family : VK_QUEUE_FAMILY_IGNORED;
+        d.dst_family = transfers ? family : VK_QUEUE_FAMILY_IGNORED;
+        record(std::move(made), cell);
+    }
+
+    /// Cells with the same dependency become one record.
+    void record(CellDependency made, std::uint32_t cell) {
+        if (full_barriers_) {
+            Dependency& d = made.dependency;
+            d.src_stages = d.dst_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+            d.local_stages = d.local_stages != 0 ? d.src_stages : 0;
+            d.src_access = d.dst_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+            d.local_access = d.local_stages != 0 ? d.src_access : 0;
+        }
+        for (CellDependency& other : found_) {
+            if (other.slot == made.slot && other.only_at_release == made.only_at_release &&
+                other.release_batch == made.release_batch && same_but_range(other.dependency, made.dependency)) {
+                other.cells.push_back(cell);
+                return;
+            }
+        }
+        made.cells.push_back(cell);
+        found_.push_back(std::move(made));
+    }
+
+    /// Splits the cells of one record into rectangles of mips and layers, or runs of bytes.
+    void add_ranges(std::uint32_t resource, const CellDependency& found) {
+        const ResourceCells& of = cells_.of_resource[resource];
+        if (of.whole) {
+            all_.push_back(found);
+            return;
+        }
+        std::vector<CellRange> rectangles;
+        for (const std::uint32_t cell : found.cells) {
+            const std::uint32_t mip = cell / of.layers;
+            const std::uint32_t layer = cell % of.layers;
+            CellRange* last = rectangles.empty() ? nullptr : &rectangles.back();
+            if (last != nullptr && last->first_mip == mip && last->first_layer + last->layer_count == layer) {
+                ++last->layer_count;
+            } else {
+                rectangles.push_back({mip, 1, layer, 1});
+            }
+        }
+        std::vector<CellRange> merged;
+        for (const CellRange& range : rectangles) {
+            const auto below = std::find_if(merged.begin(), merged.end(), [&](const CellRange& other) {
+                return other.first_mip + other.mip_count == range.first_mip && other.first_layer == range.first_layer &&
+                       other.layer_count == range.layer_count;
+            });
+            if (below != merged.end()) {
+                ++below->mip_count;
+            } else {
+                merged.push_back(range);
+            }
+        }
+        for (const CellRange& range : merged) {
+            CellDependency part = found;
+            if (graph_.resources[resource].kind == ResourceKind::image) {
+                part.dependency.image_range = {range.first_mip, range.mip_count, range.first_layer, range.layer_count,
+                                               0};
+            } else {
+                const VkDeviceSize begin = of.boundaries[range.first_layer];
+                part.dependency.buffer_range = {begin, of.boundaries[range.first_layer + range.layer_count] - begin};
+            }
+            all_.push_back(std::move(part));
+        }
+    }
+
+    void collect() {
+        std::stable_sort(all_.begin(), all_.end(),
+                         [](const CellDependency& a, const CellDependency& b) { return a.slot < b.slot; });
+        out_.first_of_slot.assign(exit_slot_ + 1, 0);
+        // Those at a batch's end first, so that what stands before a slot is one range.
+        for (const CellDependency& found : all_) {
+            if (found.only_at_release) {
+                out_.releases[found.release_batch].push_back(static_cast<std::uint32_t>(out_.dependencies.size()));
+                out_.dependencies.push_back(found.dependency);
+            }
+        }
+        std::uint32_t slot = 0;
+        out_.first_of_slot[0] = static_cast<std::uint32_t>(out_.dependencies.size());
+        for (const CellDependency& found : all_) {
+            if (found.only_at_release) {
+                continue;
+            }
+            while (slot < found.slot) {
+                out_.first_of_slot[++slot] = static_cast<std::uint32_t>(out_.dependencies.size());
+            }
+            if (found.release_batch != none) {
+                out_.releases[found.release_batch].push_back(static_cast<std::uint32_t>(out_.dependencies.size()));
+            }
+            out_.dependencies.push_back(found.dependency);
+        }
+        while (slot < exit_slot_) {
+            out_.first_of_slot[++slot] = static_cast<std::uint32_t>(out_.dependencies.size());
+        }
+        out_.first_exit = out_.first_of_slot[exit_slot_];
+    }
+
+    void attachments() {
+        out_.first_attachment.assign(1, 0);
+        for (const std::uint32_t pass_index : schedule_.order) {
+            const PassDesc& pass = graph_.passes[pass_index];
+            for (std::uint32_t i = pass.first_access; i < pass.first_access + pass.access_count; ++i) {
+                const AccessDesc& access = graph_.accesses[i];
+                const bool attachment = access.access == Access::color_attachment ||
+                                        access.access == Access::depth_attachment ||
+                                        access.access == Access::resolve_attachment;
+                if (!attachment) {
+                    continue;
+                }
+                AttachmentOps ops{i};
+                ops.load = access.clears               ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                           : is_read(access.direction) ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                       : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+                ops.store = !is_write(access.direction) ? VK_ATTACHMENT_STORE_OP_NONE
+                            : stored_[i]                ? VK_ATTACHMENT_STORE_OP_STORE
+                                                        : VK_ATTACHMENT_STORE_OP_DONT_CARE;
+                out_.attachments.push_back(ops);
+            }
+            out_.first_attachment.push_back(static_cast<std::uint32_t>(out_.attachments.size()));
+        }
+    }
+
+    const GraphDesc& graph_;
+    const QueueTopology& topology_;
+    const Cells& cells_;
+    const Schedule& schedule_;
+    const Memory& memory_;
+    const Batches& batches_;
+    bool full_barriers_;
+    std::uint32_t exit_slot_;
+    Synchronised out_;
+    std::vector<bool> stored_;          ///< by access: its content is needed later
+    std::vector<CellDependency> found_; ///< of the resource at hand
+    std::vector<CellDependency> all_;
+};
+
+} // namespace
+
+Synchronised synchronise(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells,
+                         const Schedule& schedule, const Memory& memory, const Batches& batches, bool full_barriers) {
+    return Synchroniser(graph, topology, cells, schedule, memory, batches, full_barriers).run();
+}
+
+} // namespace tyndall::rg::stages

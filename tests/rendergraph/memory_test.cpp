@@ -1,0 +1,166 @@
+// Memory sharing: never between resources whose uses the plan leaves unordered, and always when it pays.
+#include <random>
+
+#include "tests/rendergraph/frames.hpp"
+
+namespace tyndall::rg::test {
+namespace {
+
+bool bytes_meet(const Placement& a, const Placement& b) {
+    return a.kind == PlacementKind::heap && b.kind == PlacementKind::heap && a.heap == b.heap &&
+           a.offset_bytes < b.offset_bytes + b.size_bytes && b.offset_bytes < a.offset_bytes + a.size_bytes;
+}
+
+DeclaredGraph chain_of(std::uint32_t length) {
+    GraphBuilder graph;
+    Buffer previous = graph.create_buffer("buffer 0", {.size_bytes = 1024});
+    graph.add_pass("pass 0", PassKind::compute).writes(previous, Access::storage_compute);
+    for (std::uint32_t i = 1; i < length; ++i) {
+        Buffer next = graph.create_buffer("buffer " + std::to_string(i), {.size_bytes = 1024});
+        graph.add_pass("pass " + std::to_string(i), PassKind::compute)
+            .reads(previous, Access::storage_compute)
+            .writes(next, Access::storage_compute);
+        previous = next;
+    }
+    Buffer out = graph.import_buffer("out", {.size_bytes = 64}, {.has_final = true});
+    graph.add_pass("last", PassKind::compute)
+        .reads(previous, Access::storage_compute)
+        .writes(out, Access::storage_compute);
+    return graph.finish();
+}
+
+TEST(Memory, AChainNeedsTwoBuffersAtATime) {
+    const DeclaredGraph declared = chain_of(8);
+    const Plan plan = compiled(declared.desc, one_queue());
+    EXPECT_EQ(plan.statistics.transient_bytes, 2048U);
+    EXPECT_EQ(plan.statistics.largest_live_set_bytes, 2048U);
+    EXPECT_EQ(plan.statistics.transient_bytes_unaliased, 8192U);
+    EXPECT_EQ(compiled(declared.desc, one_queue(), {.aliasing = false}).statistics.transient_bytes, 8192U);
+}
+
+TEST(Memory, TheFirstUseOfSharedBytesDependsOnTheLastUseBefore) {
+    const DeclaredGraph declared = chain_of(4);
+    const Plan plan = compiled(declared.desc, one_queue());
+    std::uint32_t aliased = 0;
+    for (const Dependency& d : plan.dependencies) {
+        if (d.hazard == Hazard::aliased_memory) {
+            ++aliased;
+            EXPECT_NE(d.alias_of, none);
+            EXPECT_NE(d.producer, none);
+            EXPECT_EQ(d.old_layout, VK_IMAGE_LAYOUT_UNDEFINED);
+        }
+    }
+    EXPECT_EQ(aliased, 2U); // buffers 2 and 3 take over the bytes of 0 and 1
+}
+
+TEST(Memory, UnorderedPassesOfTwoQueuesNeverShare) {
+    // Both chains run at the same time for all that the plan says.
+    GraphBuilder graph;
+    Buffer out = graph.import_buffer("out", {.size_bytes = 64}, {.has_final = true});
+    Buffer graphics = graph.create_buffer("graphics", {.size_bytes = 4096});
+    Buffer compute = graph.create_buffer("compute", {.size_bytes = 4096});
+    Buffer merged = graph.create_buffer("merged", {.size_bytes = 64});
+    graph.add_pass("make graphics", PassKind::compute).writes(graphics, Access::storage_compute);
+    graph.add_pass("make compute", PassKind::compute)
+        .writes(compute, Access::storage_compute)
+        .on_queue(QueueWish::async_compute);
+    graph.add_pass("use compute", PassKind::compute)
+        .reads(compute, Access::storage_compute)
+        .writes(merged, Access::storage_compute)
+        .on_queue(QueueWish::async_compute);
+    graph.add_pass("use graphics", PassKind::compute)
+        .reads(graphics, Access::storage_compute)
+        .reads(merged, Access::storage_compute)
+        .writes(out, Access::storage_compute);
+    const DeclaredGraph declared = graph.finish();
+    const Plan plan = compiled(declared.desc, two_queues());
+    EXPECT_FALSE(bytes_meet(plan.placements[graphics.resource], plan.placements[compute.resource]));
+}
+
+TEST(Memory, GranularityKeepsBuffersAndImagesOnTheirOwnPages) {
+    GraphBuilder graph;
+    Buffer buffer = graph.create_buffer("buffer", {.size_bytes = 100});
+    Image image = graph.create_image("image", {.format = VK_FORMAT_R8_UNORM, .extent = {10, 10, 1}});
+    Buffer out = graph.import_buffer("out", {.size_bytes = 64}, {.has_final = true});
+    graph.add_pass("make", PassKind::compute)
+        .writes(buffer, Access::storage_compute)
+        .writes(image, Access::storage_compute);
+    graph.add_pass("use", PassKind::compute)
+        .reads(buffer, Access::storage_compute)
+        .reads(image, Access::sampled_compute)
+        .writes(out, Access::storage_compute);
+    const DeclaredGraph declared = graph.finish();
+    MemoryRequirements memory;
+    memory.of_resource = {{100, 4, 1}, {100, 4, 1}, {64, 4, 1}};
+    memory.buffer_image_granularity = 1024;
+    const tl::expected<Plan, Diagnostics> plan = compile(declared.desc, one_queue(), memory);
+    ASSERT_TRUE(plan.has_value());
+    EXPECT_NE(plan->placements[0].offset_bytes / 1024, plan->placements[1].offset_bytes / 1024);
+}
+
+TEST(Memory, ResourcesOfDifferentMemoryTypesLieInDifferentHeaps) {
+    const DeclaredGraph declared = chain_of(2);
+    MemoryRequirements memory;
+    memory.of_resource = {{1024, 4, 1}, {1024, 4, 2}, {64, 4, 1}};
+    const tl::expected<Plan, Diagnostics> plan = compile(declared.desc, one_queue(), memory);
+    ASSERT_TRUE(plan.has_value());
+    ASSERT_EQ(plan->heaps.size(), 2U);
+    EXPECT_NE(plan->placements[0].heap, plan->placements[1].heap);
+}
+
+TEST(Memory, RandomChainsStayOrderedAndNearTheLowerBound) {
+    // Every pass reads up to two earlier buffers and writes a new one; sizes vary by a factor of 64.
+    for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+        std::mt19937 random(seed);
+        GraphBuilder graph;
+        std::vector<Buffer> made;
+        Buffer out = graph.import_buffer("out", {.size_bytes = 64}, {.has_final = true});
+        for (std::uint32_t i = 0; i < 24; ++i) {
+            Buffer next = graph.create_buffer("buffer " + std::to_string(i), {.size_bytes = 256ULL << (random() % 7)});
+            PassBuilder pass = graph.add_pass("pass " + std::to_string(i), PassKind::compute);
+            for (std::uint32_t k = 0; k < 2 && !made.empty(); ++k) {
+                const std::size_t back = random() % std::min<std::size_t>(6, made.size());
+                pass.reads(made[made.size() - 1 - back], Access::storage_compute);
+            }
+            pass.writes(next, Access::storage_compute);
+            if (random() % 3 == 0) {
+                pass.on_queue(QueueWish::async_compute);
+            }
+            made.push_back(next);
+        }
+        PassBuilder last = graph.add_pass("last", PassKind::compute);
+        last.reads(made.back(), Access::storage_compute).writes(out, Access::storage_compute);
+        const DeclaredGraph declared = graph.finish();
+        const Plan plan = compiled(declared.desc, one_queue());
+        EXPECT_GE(plan.statistics.transient_bytes, plan.statistics.largest_live_set_bytes) << "seed " << seed;
+        EXPECT_LE(plan.statistics.transient_bytes, plan.statistics.largest_live_set_bytes * 3 / 2) << "seed " << seed;
+
+        // On one queue two resources may meet only if one's last use comes before the other's first.
+        const auto uses = [&](std::uint32_t resource) {
+            std::uint32_t first = none;
+            std::uint32_t last_use = 0;
+            for (std::uint32_t i = 0; i < plan.passes.size(); ++i) {
+                const PassDesc& pass = declared.desc.passes[plan.passes[i].pass];
+                for (std::uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+                    if (declared.desc.accesses[a].resource == resource) {
+                        first = first == none ? i : first;
+                        last_use = i;
+                    }
+                }
+            }
+            return std::pair{first, last_use};
+        };
+        for (std::uint32_t a = 0; a < plan.placements.size(); ++a) {
+            for (std::uint32_t b = a + 1; b < plan.placements.size(); ++b) {
+                if (bytes_meet(plan.placements[a], plan.placements[b])) {
+                    const auto [first_a, last_a] = uses(a);
+                    const auto [first_b, last_b] = uses(b);
+                    EXPECT_TRUE(last_a < first_b || last_b < first_a) << "seed " << seed;
+                }
+            }
+        }
+    }
+}
+
+} // namespace
+} // namespace tyndall::rg::test
