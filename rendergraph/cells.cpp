@@ -24,6 +24,33 @@ VkDeviceSize end_of(const ResourceDesc& resource, const BufferRange& range) {
 
 } // namespace
 
+std::vector<CellRange> as_rectangles(const ResourceCells& resource, std::span<const std::uint32_t> cells) {
+    std::vector<CellRange> runs;
+    for (const std::uint32_t cell : cells) {
+        const std::uint32_t mip = cell / resource.layers;
+        const std::uint32_t layer = cell % resource.layers;
+        CellRange* last = runs.empty() ? nullptr : &runs.back();
+        if (last != nullptr && last->first_mip == mip && last->first_layer + last->layer_count == layer) {
+            ++last->layer_count;
+        } else {
+            runs.push_back({mip, 1, layer, 1});
+        }
+    }
+    std::vector<CellRange> merged;
+    for (const CellRange& run : runs) {
+        const auto above = std::find_if(merged.begin(), merged.end(), [&](const CellRange& other) {
+            return other.first_mip + other.mip_count == run.first_mip && other.first_layer == run.first_layer &&
+                   other.layer_count == run.layer_count;
+        });
+        if (above != merged.end()) {
+            ++above->mip_count;
+        } else {
+            merged.push_back(run);
+        }
+    }
+    return merged;
+}
+
 Cells cut_into_cells(const GraphDesc& graph) {
     Cells cells;
     cells.of_resource.resize(graph.resources.size());

@@ -48,10 +48,12 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     const Batches batches = make_batches(graph, sched);
     const Synchronised sync = synchronise(graph, topology, cells, sched, placed, batches, options.full_barriers);
 
+    const Attachments attachments = choose_attachment_operations(graph, cells, sched);
+
     Plan plan;
     plan.topology = topology;
     plan.dependencies = sync.dependencies;
-    plan.attachments = sync.attachments;
+    plan.attachments = attachments.operations;
     plan.placements = placed.placements;
     plan.heaps = placed.heaps;
     plan.batches = batches.batches;
@@ -73,8 +75,8 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
             .queue_reason = sched.queue_reason[slot],
             .first_barrier = sync.first_of_slot[slot],
             .barrier_count = sync.first_of_slot[slot + 1] - sync.first_of_slot[slot],
-            .first_attachment = sync.first_attachment[slot],
-            .attachment_count = sync.first_attachment[slot + 1] - sync.first_attachment[slot],
+            .first_attachment = attachments.first_of_slot[slot],
+            .attachment_count = attachments.first_of_slot[slot + 1] - attachments.first_of_slot[slot],
         });
     }
     for (std::uint32_t i = 0; i < plan.batches.size(); ++i) {

@@ -41,6 +41,8 @@ void for_each_cell(const ResourceCells& resource, const CellRange& range, F&& f)
         }
     }
 }
+/// The cells as few ranges: runs of layers, then equal runs of neighbouring mips. `cells` ascending.
+[[nodiscard]] std::vector<CellRange> as_rectangles(const ResourceCells& resource, std::span<const std::uint32_t> cells);
 /// Requires ranges inside their resources (validate). O(accesses log accesses).
 [[nodiscard]] Cells cut_into_cells(const GraphDesc& graph);
 
@@ -158,13 +160,21 @@ struct Synchronised {
     std::vector<std::uint32_t> first_of_slot; ///< slots + 1 entries
     std::uint32_t first_exit = 0;
     std::vector<std::vector<std::uint32_t>> releases; ///< by batch, into dependencies
-    std::vector<AttachmentOps> attachments;           ///< grouped by slot
-    std::vector<std::uint32_t> first_attachment;      ///< slots + 1 entries
     std::vector<VkImageLayout> resting_layout;        ///< by resource, for histories
 };
 /// Walks each resource's uses in schedule order, cell by cell; reads that want the same layout share one dependency.
 [[nodiscard]] Synchronised synchronise(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells,
                                        const Schedule& schedule, const Memory& memory, const Batches& batches,
                                        bool full_barriers);
+
+// ---- attachments -------------------------------------------------------------------------------------------------
+
+struct Attachments {
+    std::vector<AttachmentOps> operations;    ///< grouped by slot
+    std::vector<std::uint32_t> first_of_slot; ///< slots + 1 entries
+};
+/// Load follows from the verb, store from later uses: what nobody reads is not stored. O(uses x cells of each).
+[[nodiscard]] Attachments choose_attachment_operations(const GraphDesc& graph, const Cells& cells,
+                                                       const Schedule& schedule);
 
 } // namespace tyndall::rg::stages

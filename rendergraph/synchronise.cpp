@@ -63,13 +63,11 @@ public:
     Synchronised run() {
         out_.resting_layout.assign(graph_.resources.size(), VK_IMAGE_LAYOUT_UNDEFINED);
         out_.releases.resize(batches_.batches.size());
-        stored_.assign(graph_.accesses.size(), false);
         decide_resting_layouts();
         for (std::uint32_t resource = 0; resource < graph_.resources.size(); ++resource) {
             visit(resource);
         }
         collect();
-        attachments();
         return std::move(out_);
     }
 
@@ -160,10 +158,6 @@ private:
         Before before = entry;
         for (std::size_t g = 0; g < groups.size(); ++g) {
             connect(resource, cell, before, groups[g]);
-            const bool needed_later = g + 1 < groups.size() ? !groups[g + 1].discards : leaves_frame(resource);
-            if (groups[g].writes && needed_later) {
-                mark_stored(resource, *groups[g].uses.front());
-            }
             before = Before{};
             before.uses = groups[g].uses;
             before.layout = groups[g].layout;
@@ -171,18 +165,6 @@ private:
         }
         if (!groups.empty()) {
             leave(resource, cell, before);
-        }
-    }
-
-    [[nodiscard]] bool leaves_frame(std::uint32_t resource) const {
-        const ResourceDesc& desc = graph_.resources[resource];
-        return desc.has_history || desc.lifetime == ResourceLifetime::imported;
-    }
-
-    void mark_stored(std::uint32_t resource, const Use& use) {
-        const PassDesc& pass = graph_.passes[use.pass];
-        for (std::uint32_t i = pass.first_access; i < pass.first_access + pass.access_count; ++i) {
-            stored_[i] = stored_[i] || graph_.accesses[i].resource == resource;
         }
     }
 
@@ -427,30 +409,7 @@ private:
             all_.push_back(found);
             return;
         }
-        std::vector<CellRange> rectangles;
-        for (const std::uint32_t cell : found.cells) {
-            const std::uint32_t mip = cell / of.layers;
-            const std::uint32_t layer = cell % of.layers;
-            CellRange* last = rectangles.empty() ? nullptr : &rectangles.back();
-            if (last != nullptr && last->first_mip == mip && last->first_layer + last->layer_count == layer) {
-                ++last->layer_count;
-            } else {
-                rectangles.push_back({mip, 1, layer, 1});
-            }
-        }
-        std::vector<CellRange> merged;
-        for (const CellRange& range : rectangles) {
-            const auto below = std::find_if(merged.begin(), merged.end(), [&](const CellRange& other) {
-                return other.first_mip + other.mip_count == range.first_mip && other.first_layer == range.first_layer &&
-                       other.layer_count == range.layer_count;
-            });
-            if (below != merged.end()) {
-                ++below->mip_count;
-            } else {
-                merged.push_back(range);
-            }
-        }
-        for (const CellRange& range : merged) {
+        for (const CellRange& range : as_rectangles(of, found.cells)) {
             CellDependency part = found;
             if (graph_.resources[resource].kind == ResourceKind::image) {
                 part.dependency.image_range = {range.first_mip, range.mip_count, range.first_layer, range.layer_count,
@@ -494,31 +453,6 @@ private:
         out_.first_exit = out_.first_of_slot[exit_slot_];
     }
 
-    void attachments() {
-        out_.first_attachment.assign(1, 0);
-        for (const std::uint32_t pass_index : schedule_.order) {
-            const PassDesc& pass = graph_.passes[pass_index];
-            for (std::uint32_t i = pass.first_access; i < pass.first_access + pass.access_count; ++i) {
-                const AccessDesc& access = graph_.accesses[i];
-                const bool attachment = access.access == Access::color_attachment ||
-                                        access.access == Access::depth_attachment ||
-                                        access.access == Access::resolve_attachment;
-                if (!attachment) {
-                    continue;
-                }
-                AttachmentOps ops{i};
-                ops.load = access.clears               ? VK_ATTACHMENT_LOAD_OP_CLEAR
-                           : is_read(access.direction) ? VK_ATTACHMENT_LOAD_OP_LOAD
-                                                       : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-                ops.store = !is_write(access.direction) ? VK_ATTACHMENT_STORE_OP_NONE
-                            : stored_[i]                ? VK_ATTACHMENT_STORE_OP_STORE
-                                                        : VK_ATTACHMENT_STORE_OP_DONT_CARE;
-                out_.attachments.push_back(ops);
-            }
-            out_.first_attachment.push_back(static_cast<std::uint32_t>(out_.attachments.size()));
-        }
-    }
-
     const GraphDesc& graph_;
     const QueueTopology& topology_;
     const Cells& cells_;
@@ -528,7 +462,6 @@ private:
     bool full_barriers_;
     std::uint32_t exit_slot_;
     Synchronised out_;
-    std::vector<bool> stored_;          ///< by access: its content is needed later
     std::vector<CellDependency> found_; ///< of the resource at hand
     std::vector<CellDependency> all_;
 };

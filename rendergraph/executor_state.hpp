@@ -1,0 +1,260 @@
+// What an executor owns and what it works on while it records one frame. Internal: the public face is executor.hpp.
+//
+// One frame: begin (wait for the slot, free what no frame uses any more), bind (a physical object for every resource),
+// record (segments of command buffers), submit, finish (histories swap roles). Whole frames are ordered on the device:
+// the first commands of a frame on each queue wait for all that earlier frames did there, by a full barrier, and for
+// the last work of every other queue, by its timeline semaphore. So the plan need not look beyond its own frame.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "rendergraph/executor.hpp"
+
+namespace tyndall::rg {
+
+/// A queue of the device and its timeline; values only grow, over all frames.
+struct RealQueue {
+    DeviceQueue info;
+    VkSemaphore timeline = VK_NULL_HANDLE;
+    std::uint64_t submitted = 0;  ///< the value that the last submission signals
+    std::uint32_t family_bit = 0; ///< bit of the first queue of the same family
+};
+
+struct CachedView {
+    ImageRange range;
+    VkImageViewType type = VK_IMAGE_VIEW_TYPE_2D;
+    VkImageView view = VK_NULL_HANDLE;
+};
+
+/// An image or a buffer with the views made of it. `owned`: ours to destroy.
+struct PhysicalObject {
+    VkImage image = VK_NULL_HANDLE;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    bool owned = true;
+    bool concurrent = false;
+    std::vector<CachedView> views;
+};
+
+/// All that decides what a graph-owned object is: equal keys, same object.
+struct ObjectKey {
+    ResourceKind kind = ResourceKind::image;
+    ImageDesc image;
+    VkDeviceSize size_bytes = 0;
+    VkFlags usage = 0;
+    std::uint32_t queues = 0; ///< real queues, as bits, that share it concurrently; 0: exclusive
+};
+[[nodiscard]] bool same_key(const ObjectKey& a, const ObjectKey& b);
+
+/// Every transient of one plan, and the heaps that they share.
+struct TransientSet {
+    struct Entry {
+        bool placed = false;
+        ObjectKey key;
+        std::uint32_t heap = none;
+        VkDeviceSize offset_bytes = 0;
+    };
+    std::vector<Entry> entries;          ///< by resource
+    std::vector<PhysicalObject> objects; ///< by resource
+    std::vector<VkDeviceSize> heap_bytes;
+    std::vector<std::uint32_t> type_bits; ///< by heap: memory types that suit all that lives there
+    std::vector<VkDeviceMemory> memory;   ///< by heap
+    std::uint64_t last_used = 0;          ///< frame
+};
+
+/// The two copies of a resource with a history: `current` is written this frame, the other one is the frame before's.
+struct HistoryPair {
+    std::string name; ///< of the resource that is written
+    ObjectKey key;
+    std::vector<PhysicalObject> copies;       ///< two
+    std::array<VkImageLayout, 2> layout = {}; ///< between frames; UNDEFINED: not known, content worthless
+    std::vector<VkDeviceMemory> memory;       ///< one, that holds both
+    std::uint32_t current = 0;
+    std::uint64_t written_in = 0;          ///< frame that gave the other copy its content
+    std::uint64_t last_used = 0;           ///< frame
+    std::uint32_t resource = none;         ///< this frame's index of the resource that is written
+    std::uint32_t history_resource = none; ///< and of its history
+};
+
+/// Views of a host's image, kept until the host releases it or has not bound it for some frames.
+struct ImportedObject {
+    PhysicalObject object;
+    std::uint64_t last_used = 0;
+};
+
+/// Objects that wait for the frames that may still use them.
+struct Garbage {
+    std::uint64_t last_used = 0;
+    std::vector<PhysicalObject> objects;
+    std::vector<VkDeviceMemory> memory;
+};
+
+struct CommandPool {
+    VkCommandPool pool = VK_NULL_HANDLE;
+    std::vector<VkCommandBuffer> buffers;
+    std::uint32_t used = 0;
+};
+
+struct TimedPass {
+    std::uint32_t pass = none;
+    std::uint32_t valid_bits = 0;
+    std::string name; ///< for the report of a device loss: the graph may be gone by then
+};
+
+/// What a frame in flight holds on to.
+struct FrameSlot {
+    std::uint64_t frame = 0;           ///< 0: never used
+    bool by_host = false;              ///< recorded into a command buffer of the host, who knows when it has finished
+    std::vector<std::uint64_t> values; ///< by real queue: reached when the frame has finished
+    std::vector<CommandPool> pools;    ///< by real queue
+    VkQueryPool queries = VK_NULL_HANDLE;
+    std::uint32_t query_capacity = 0;
+    std::vector<TimedPass> timed; ///< queries 2 i and 2 i + 1 are the i-th's begin and end
+    std::uint32_t timed_count = 0;
+    std::string last_passes; ///< names in the frame's last submission
+};
+
+/// Consecutive batches on one real queue that need no semaphore between them: one command buffer.
+struct Segment {
+    std::uint32_t queue = 0; ///< real
+    std::uint32_t first_batch = 0;
+    std::uint32_t batch_count = 0; ///< 0: only prepares new histories
+    VkCommandBuffer cmd = VK_NULL_HANDLE;
+    std::uint64_t value = 0;
+    std::uint32_t first_wait = 0, wait_count = 0;     ///< into FrameWork::waits
+    std::uint32_t first_signal = 0, signal_count = 0; ///< into FrameWork::signals
+};
+
+/// The frame that is being recorded. Kept between frames so that a steady frame allocates nothing.
+struct FrameWork {
+    const GraphDesc* graph = nullptr;
+    const Plan* plan = nullptr;
+    const PassCallbacks* callbacks = nullptr;
+    std::uint64_t number = 0;
+    std::uint32_t slot = 0;
+    std::vector<const ImportBinding*> bindings; ///< by resource
+    std::vector<PhysicalObject*> objects;       ///< by resource, null where the plan uses none
+    std::vector<std::uint32_t> real_of;         ///< by logical queue
+    std::vector<std::uint32_t> logical_count;   ///< by real queue: how many logical ones fold onto it
+    std::vector<std::uint32_t> batch_of_pass;
+    std::vector<std::uint32_t> segment_of_batch;
+    std::vector<bool> batch_signals; ///< a batch on another real queue waits for it
+    std::vector<bool> queue_begun;   ///< by real queue: its first segment of the frame is recorded
+    std::vector<Segment> segments;
+    std::vector<VkSemaphoreSubmitInfo> waits;
+    std::vector<VkSemaphoreSubmitInfo> signals;
+    std::vector<VkCommandBufferSubmitInfo> command_buffers;
+    std::vector<VkSubmitInfo2> submits;
+    std::vector<VkMemoryBarrier2> memory_barriers;
+    std::vector<VkImageMemoryBarrier2> image_barriers;
+    std::vector<VkBufferMemoryBarrier2> buffer_barriers;
+    std::vector<VkRenderingAttachmentInfo> color_attachments;
+    std::optional<ExecuteError> error; ///< the first of a kind; undeclared accesses are gathered in its message
+};
+
+[[nodiscard]] ExecuteError vulkan_error(VkResult result, std::string_view what);
+
+class ExecutorState {
+public:
+    explicit ExecutorState(ExecutorInfo given) : info(std::move(given)) {}
+    ~ExecutorState();
+    ExecutorState(const ExecutorState&) = delete;
+    ExecutorState& operator=(const ExecutorState&) = delete;
+
+    using Result = tl::expected<void, ExecuteError>;
+
+    [[nodiscard]] Result initialise();
+
+    // executor.cpp: a frame's course
+    [[nodiscard]] tl::expected<std::uint64_t, ExecuteError> execute(VkCommandBuffer host_cmd, const GraphDesc& graph,
+                                                                    const Plan& plan, const PassCallbacks& callbacks,
+                                                                    std::span<const ImportBinding> imports);
+    [[nodiscard]] Result begin_frame(VkCommandBuffer host_cmd);
+    void finish_frame(bool by_host);
+    [[nodiscard]] Result wait_for_values(std::span<const std::uint64_t> values);
+    [[nodiscard]] std::uint32_t slot_of(std::uint64_t frame) const;
+    /// Adds to a device loss what was last submitted.
+    [[nodiscard]] ExecuteError explained(ExecuteError error) const;
+
+    // executor_memory.cpp: making objects
+    [[nodiscard]] MemoryRequirement requirement_of(const GraphDesc& graph, std::uint32_t resource) const;
+    [[nodiscard]] ObjectKey key_of(std::uint32_t resource) const;
+    [[nodiscard]] tl::expected<std::unique_ptr<TransientSet>, ExecuteError> create_transients();
+    [[nodiscard]] tl::expected<std::unique_ptr<HistoryPair>, ExecuteError> create_history(const ObjectKey& key,
+                                                                                          const std::string& name);
+    [[nodiscard]] Result fill(TransientSet& set);
+    [[nodiscard]] Result fill(HistoryPair& pair);
+    [[nodiscard]] Result create_object(const ObjectKey& key, const std::string& name, PhysicalObject& object);
+    [[nodiscard]] VkMemoryRequirements requirements_of(const PhysicalObject& object) const;
+    [[nodiscard]] tl::expected<VkDeviceMemory, ExecuteError> allocate(VkDeviceSize size, std::uint32_t type_bits,
+                                                                      bool device_address) const;
+    [[nodiscard]] VkResult bind_memory(const PhysicalObject& object, VkDeviceMemory memory, VkDeviceSize offset) const;
+    void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+
+    // executor_objects.cpp: keeping them from frame to frame
+    [[nodiscard]] Result bind_objects(std::span<const ImportBinding> imports);
+    [[nodiscard]] Result bind_imports(std::span<const ImportBinding> imports);
+    [[nodiscard]] Result bind_transients();
+    [[nodiscard]] Result bind_histories();
+    [[nodiscard]] bool matches(const TransientSet& set) const;
+    [[nodiscard]] bool history_valid(std::uint32_t resource) const;
+    /// Null, and an error of the frame, if the driver cannot make it.
+    [[nodiscard]] VkImageView view_of(std::uint32_t resource, const ImageRange& range, VkImageViewType type);
+    void release_import(VkImage image);
+    void retire_unused();
+    void retire(std::uint64_t last_used, std::vector<PhysicalObject> objects, std::vector<VkDeviceMemory> memory);
+    void collect_garbage(std::uint64_t finished_frame);
+    /// Frees what only finished frames used, after waiting for all: the last resort before out-of-memory.
+    [[nodiscard]] bool make_room();
+    void destroy(std::vector<PhysicalObject>& objects, std::vector<VkDeviceMemory>& memory) const;
+
+    // executor_record.cpp: commands
+    void map_queues(bool all_onto_first);
+    void plan_segments();
+    void plan_exits();
+    [[nodiscard]] Result record_segments();
+    [[nodiscard]] Result record_into(VkCommandBuffer cmd);
+    [[nodiscard]] Result begin_segment(Segment& segment);
+    void record_batch(VkCommandBuffer cmd, std::uint32_t batch);
+    void record_pass(VkCommandBuffer cmd, const PlannedPass& planned);
+    void begin_rendering(VkCommandBuffer cmd, const PlannedPass& planned, VkExtent2D& extent);
+    void begin_labels(VkCommandBuffer cmd, const std::string& name) const;
+    [[nodiscard]] Result submit_segments();
+
+    // executor_barriers.cpp: the plan's dependencies as barriers of the real queues
+    void whole_memory_barrier(VkCommandBuffer cmd) const;
+    void prepare_histories(VkCommandBuffer cmd, std::uint32_t real_queue);
+    [[nodiscard]] bool needs_preparation(std::uint32_t real_queue) const;
+    void add_before_consumer(const Dependency& dependency);
+    void add_at_batch_end(const Dependency& dependency);
+    void add_exit(const Dependency& dependency);
+    void add_barrier(const Dependency& dependency, VkPipelineStageFlags2 src_stages, VkAccessFlags2 src_access,
+                     VkPipelineStageFlags2 dst_stages, VkAccessFlags2 dst_access, std::uint32_t src_family,
+                     std::uint32_t dst_family);
+    void flush_barriers(VkCommandBuffer cmd);
+
+    // executor_timing.cpp
+    [[nodiscard]] Result prepare_queries(std::uint32_t pass_count);
+    void reset_queries(VkCommandBuffer cmd, std::uint32_t real_queue, std::uint32_t pass_count);
+    void write_timestamp(VkCommandBuffer cmd, std::uint32_t query) const;
+    [[nodiscard]] bool read_timings(FrameSlot& slot);
+    [[nodiscard]] std::string unfinished_passes() const;
+
+    ExecutorInfo info;
+    DeviceTable vk = {};
+    std::vector<RealQueue> queues;
+    std::uint32_t all_families = 0; ///< family bits, 0 if there is only one
+    std::vector<FrameSlot> slots;
+    std::uint64_t frames = 0; ///< executed so far; the next one is frames + 1
+    bool history_lost = false;
+    std::vector<std::unique_ptr<TransientSet>> transients;
+    std::vector<std::unique_ptr<HistoryPair>> histories;
+    std::vector<std::unique_ptr<ImportedObject>> imports;
+    std::vector<Garbage> garbage;
+    FrameWork work;
+    std::vector<PassTiming> newest_timings;
+    std::uint64_t newest_timed_frame = 0;
+    std::vector<std::uint64_t> query_results;
+};
+
+} // namespace tyndall::rg
