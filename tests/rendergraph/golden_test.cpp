@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "rendergraph/explain.hpp"
 #include "tests/rendergraph/frames.hpp"
 
 namespace tyndall::rg::test {
@@ -34,6 +35,13 @@ TEST(Golden, FogFrameOnTwoFamilies) {
 TEST(Golden, FogFrameOnTwoQueuesOfOneFamily) {
     const DeclaredGraph declared = fog_frame();
     expect_golden("fog_two_queues", to_text(declared.desc, compiled(declared.desc, two_queues_one_family())));
+}
+
+TEST(Golden, ExplainTable) {
+    const DeclaredGraph declared = fog_frame();
+    const Plan plan = compiled(declared.desc, two_queues());
+    const std::vector<PassDuration> durations = {{plan.passes[0].pass, 1.25}, {plan.passes[1].pass, 0.5}};
+    expect_golden("explain_table", explain_table(declared.desc, plan, durations));
 }
 
 } // namespace
