@@ -25,6 +25,7 @@ struct ExecuteError {
         device_lost,
         missing_function,
         missing_binding,
+        undeclared_access, ///< a callback asked its PassContext for what its pass did not declare
         unsuitable_queue,
         vulkan
     };
@@ -170,11 +171,15 @@ public:
     [[nodiscard]] std::uint32_t next_slot() const;
     [[nodiscard]] tl::expected<void, ExecuteError> wait_for_slot();
 
-    /// Timestamps of the newest finished frame, in submission order; empty unless ExecutorInfo::profile.
+    /// Timestamps of the newest finished frame, in submission order; empty unless ExecutorInfo::profile. That a frame
+    /// of `record` has finished is known when its slot comes round again.
     [[nodiscard]] std::vector<PassTiming> timings();
 
     /// After a camera cut: history_valid is false in the next frame.
     void invalidate_history();
+
+    /// To be called before an imported image is destroyed: views of it are kept from frame to frame until then.
+    void release_import(VkImage image);
 
 private:
     explicit Executor(std::unique_ptr<ExecutorState> state);

@@ -1,4 +1,5 @@
-// Making physical objects: the driver's requirements, images and buffers at the plan's offsets of its heaps, history pairs.
+// Making physical objects: the driver's requirements, images and buffers at the plan's offsets of its heaps, history
+// pairs.
 #include <algorithm>
 #include <bit>
 
@@ -11,22 +12,6 @@ bool same_image(const ImageDesc& a, const ImageDesc& b) {
     return a.format == b.format && a.extent.width == b.extent.width && a.extent.height == b.extent.height &&
            a.extent.depth == b.extent.depth && a.mips == b.mips && a.layers == b.layers && a.type == b.type &&
            a.samples == b.samples && a.flags == b.flags;
-}
-
-/// What any pass of the graph needs, culled or not, so that requirements and objects speak of the same thing.
-VkFlags usage_in_graph(const GraphDesc& graph, std::uint32_t resource) {
-    const ResourceDesc& desc = graph.resources[resource];
-    const bool is_image = desc.kind == ResourceKind::image;
-    VkFlags usage = is_image ? desc.image.extra_usage : desc.buffer.extra_usage;
-    for (const AccessDesc& access : graph.accesses) {
-        // The two copies of a history swap roles, so both can do what either must.
-        const std::uint32_t accessed = access.resource;
-        if (accessed == resource || accessed == desc.history_of ||
-            graph.resources[accessed].history_of == resource) {
-            usage |= is_image ? access_info(access.access).image_usage : access_info(access.access).buffer_usage;
-        }
-    }
-    return usage;
 }
 
 bool describable(const ResourceDesc& desc) {
@@ -88,11 +73,28 @@ bool same_key(const ObjectKey& a, const ObjectKey& b) {
            (a.kind == ResourceKind::buffer ? a.size_bytes == b.size_bytes : same_image(a.image, b.image));
 }
 
+void gather_usage(const GraphDesc& graph, std::vector<VkFlags>& usage) {
+    usage.clear();
+    for (const ResourceDesc& desc : graph.resources) {
+        usage.push_back(desc.kind == ResourceKind::image ? desc.image.extra_usage : desc.buffer.extra_usage);
+    }
+    for (const AccessDesc& access : graph.accesses) {
+        const AccessInfo& row = access_info(access.access);
+        usage[access.resource] |=
+            graph.resources[access.resource].kind == ResourceKind::image ? row.image_usage : row.buffer_usage;
+    }
+    for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
+        // The two copies of a history swap roles, so both can do what either must.
+        if (const std::uint32_t written = graph.resources[resource].history_of; written != none) {
+            usage[resource] = usage[written] = usage[resource] | usage[written];
+        }
+    }
+}
+
 // ---- requirements ------------------------------------------------------------------------------------------------
 
-MemoryRequirement ExecutorState::requirement_of(const GraphDesc& graph, std::uint32_t resource) const {
-    const ResourceDesc& desc = graph.resources[resource];
-    ObjectKey key{desc.kind, desc.image, desc.buffer.size_bytes, usage_in_graph(graph, resource), 0};
+MemoryRequirement ExecutorState::requirement_of(const ResourceDesc& desc, VkFlags usage) const {
+    const ObjectKey key{desc.kind, desc.image, desc.buffer.size_bytes, usage, 0};
     MemoryRequirement out;
     if (desc.lifetime == ResourceLifetime::imported || key.usage == 0 || !describable(desc)) {
         return out;
@@ -136,7 +138,7 @@ VkMemoryRequirements ExecutorState::requirements_of(const PhysicalObject& object
 ObjectKey ExecutorState::key_of(std::uint32_t resource) const {
     const ResourceDesc& desc = work.graph->resources[resource];
     const Placement& placement = work.plan->placements[resource];
-    ObjectKey key{desc.kind, desc.image, desc.buffer.size_bytes, usage_in_graph(*work.graph, resource), 0};
+    ObjectKey key{desc.kind, desc.image, desc.buffer.size_bytes, work.usage[resource], 0};
     key.usage |= desc.kind == ResourceKind::image ? placement.image_usage : placement.buffer_usage;
     // A history passes from family to family between frames, outside the plan's sight: it is shared if it has several.
     if (!placement.concurrent && placement.kind != PlacementKind::history) {

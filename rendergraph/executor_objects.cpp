@@ -12,7 +12,9 @@ constexpr std::uint64_t frames_kept_unused = 8;
 /// Two plans may alternate from frame to frame without creating objects; the memory of more is not held on to.
 constexpr std::size_t transient_sets_kept = 2;
 
-bool out_of_memory(const ExecuteError& error) { return error.kind == ExecuteError::Kind::out_of_memory; }
+bool out_of_memory(const ExecuteError& error) {
+    return error.kind == ExecuteError::Kind::out_of_memory;
+}
 
 } // namespace
 
@@ -53,10 +55,10 @@ ExecutorState::Result ExecutorState::bind_imports(std::span<const ImportBinding>
         }
     }
     const auto missing = [&](std::uint32_t resource, std::string_view what) {
-        return tl::unexpected(ExecuteError{
-            .kind = ExecuteError::Kind::missing_binding,
-            .message = "Imported resource '" + graph.resources[resource].name + "' has no " + std::string(what) +
-                       " bound in this frame; add it to the import bindings"});
+        return tl::unexpected(ExecuteError{.kind = ExecuteError::Kind::missing_binding,
+                                           .message = "Imported resource '" + graph.resources[resource].name +
+                                                      "' has no " + std::string(what) +
+                                                      " bound in this frame; add it to the import bindings"});
     };
     for (const PlannedPass& planned : work.plan->passes) {
         const PassDesc& pass = graph.passes[planned.pass];
@@ -80,19 +82,19 @@ ExecutorState::Result ExecutorState::bind_imports(std::span<const ImportBinding>
                 return missing(resource, "semaphore to signal");
             }
             const auto known = std::find_if(imports.begin(), imports.end(), [&](const auto& entry) {
-                return is_image ? entry->object.front().image == binding->image
-                                : entry->object.front().buffer == binding->buffer;
+                return is_image ? entry->objects.front().image == binding->image
+                                : entry->objects.front().buffer == binding->buffer;
             });
             if (known == imports.end()) {
                 auto entry = std::make_unique<ImportedObject>();
-                entry->object.push_back({.image = is_image ? binding->image : VK_NULL_HANDLE,
-                                         .buffer = is_image ? VK_NULL_HANDLE : binding->buffer,
-                                         .owned = false});
+                entry->objects.push_back({.image = is_image ? binding->image : VK_NULL_HANDLE,
+                                          .buffer = is_image ? VK_NULL_HANDLE : binding->buffer,
+                                          .owned = false});
                 imports.push_back(std::move(entry));
             }
             ImportedObject& entry = known == imports.end() ? *imports.back() : **known;
             entry.last_used = work.number;
-            work.objects[resource] = &entry.object.front();
+            work.objects[resource] = &entry.objects.front();
         }
     }
     return {};
@@ -113,9 +115,9 @@ bool ExecutorState::matches(const TransientSet& set) const {
         const TransientSet::Entry& entry = set.entries[resource];
         const Placement& placement = plan.placements[resource];
         const bool placed = placement.kind == PlacementKind::heap;
-        if (placed != entry.placed || (placed && (entry.heap != placement.heap ||
-                                                  entry.offset_bytes != placement.offset_bytes ||
-                                                  !same_key(entry.key, key_of(resource))))) {
+        if (placed != entry.placed ||
+            (placed && (entry.heap != placement.heap || entry.offset_bytes != placement.offset_bytes ||
+                        !same_key(entry.key, key_of(resource))))) {
             return false;
         }
     }
@@ -172,10 +174,12 @@ ExecutorState::Result ExecutorState::bind_histories() {
             known = histories.end();
         }
         if (known == histories.end()) {
-            auto made = create_history(key, name);
-            if (!made && out_of_memory(made.error()) && make_room()) {
-                made = create_history(key, name);
-            }
+            const auto create = [&] {
+                auto first = create_history(key, name);
+                return !first && out_of_memory(first.error()) && make_room() ? create_history(key, name)
+                                                                             : std::move(first);
+            };
+            auto made = create();
             if (!made) {
                 return tl::unexpected(std::move(made.error()));
             }
@@ -236,9 +240,9 @@ void ExecutorState::retire(std::uint64_t last_used, std::vector<PhysicalObject> 
 
 void ExecutorState::release_import(VkImage image) {
     const auto found = std::find_if(imports.begin(), imports.end(),
-                                    [&](const auto& entry) { return entry->object.front().image == image; });
+                                    [&](const auto& entry) { return entry->objects.front().image == image; });
     if (found != imports.end()) {
-        retire((*found)->last_used, std::move((*found)->object), {});
+        retire((*found)->last_used, std::move((*found)->objects), {});
         imports.erase(found);
     }
 }
@@ -262,7 +266,7 @@ void ExecutorState::retire_unused() {
     std::erase_if(imports, [&](auto& import) {
         const bool old = unused(import->last_used);
         if (old) {
-            retire(import->last_used, std::move(import->object), {});
+            retire(import->last_used, std::move(import->objects), {});
         }
         return old;
     });

@@ -78,7 +78,7 @@ struct HistoryPair {
 
 /// Views of a host's image, kept until the host releases it or has not bound it for some frames.
 struct ImportedObject {
-    PhysicalObject object;
+    std::vector<PhysicalObject> objects; ///< one
     std::uint64_t last_used = 0;
 };
 
@@ -111,7 +111,7 @@ struct FrameSlot {
     std::uint32_t query_capacity = 0;
     std::vector<TimedPass> timed; ///< queries 2 i and 2 i + 1 are the i-th's begin and end
     std::uint32_t timed_count = 0;
-    std::string last_passes; ///< names in the frame's last submission
+    std::string last_pass; ///< the last one in submission order
 };
 
 /// Consecutive batches on one real queue that need no semaphore between them: one command buffer.
@@ -132,6 +132,8 @@ struct FrameWork {
     const PassCallbacks* callbacks = nullptr;
     std::uint64_t number = 0;
     std::uint32_t slot = 0;
+    bool by_host = false;                       ///< recorded into a command buffer of the host
+    std::vector<VkFlags> usage;                 ///< by resource
     std::vector<const ImportBinding*> bindings; ///< by resource
     std::vector<PhysicalObject*> objects;       ///< by resource, null where the plan uses none
     std::vector<std::uint32_t> real_of;         ///< by logical queue
@@ -145,12 +147,21 @@ struct FrameWork {
     std::vector<VkSemaphoreSubmitInfo> signals;
     std::vector<VkCommandBufferSubmitInfo> command_buffers;
     std::vector<VkSubmitInfo2> submits;
-    std::vector<VkMemoryBarrier2> memory_barriers;
     std::vector<VkImageMemoryBarrier2> image_barriers;
     std::vector<VkBufferMemoryBarrier2> buffer_barriers;
+    std::vector<std::uint64_t> values;       ///< by real queue, of its newest segment
+    std::vector<std::uint64_t> entry_values; ///< by real queue, before the frame's first pass
     std::vector<VkRenderingAttachmentInfo> color_attachments;
-    std::optional<ExecuteError> error; ///< the first of a kind; undeclared accesses are gathered in its message
+    std::vector<std::size_t> multisampled; ///< of color_attachments
+    std::vector<VkWriteDescriptorSet> writes;
+    std::optional<ExecuteError> error; ///< the first one; undeclared accesses are gathered in its message
 };
+
+/// By resource: what any pass of the graph needs, culled or not, so that requirements and objects speak of the same.
+void gather_usage(const GraphDesc& graph, std::vector<VkFlags>& usage);
+
+/// `range` in numbers: mips and layers counted, aspects named.
+[[nodiscard]] ImageRange resolved(const ImageRange& range, const ImageDesc& image);
 
 [[nodiscard]] ExecuteError vulkan_error(VkResult result, std::string_view what);
 
@@ -166,18 +177,19 @@ public:
     [[nodiscard]] Result initialise();
 
     // executor.cpp: a frame's course
+    /// Into `host_cmd`, or submitted if that is null.
     [[nodiscard]] tl::expected<std::uint64_t, ExecuteError> execute(VkCommandBuffer host_cmd, const GraphDesc& graph,
                                                                     const Plan& plan, const PassCallbacks& callbacks,
                                                                     std::span<const ImportBinding> imports);
-    [[nodiscard]] Result begin_frame(VkCommandBuffer host_cmd);
-    void finish_frame(bool by_host);
-    [[nodiscard]] Result wait_for_values(std::span<const std::uint64_t> values);
-    [[nodiscard]] std::uint32_t slot_of(std::uint64_t frame) const;
-    /// Adds to a device loss what was last submitted.
-    [[nodiscard]] ExecuteError explained(ExecuteError error) const;
+    [[nodiscard]] Result begin_frame();
+    [[nodiscard]] Result record_and_submit(VkCommandBuffer host_cmd);
+    void finish_frame();
+    [[nodiscard]] Result wait_for_values(std::span<const std::uint64_t> values) const;
+    [[nodiscard]] FrameSlot& slot_of(std::uint64_t frame) { return slots[(frame - 1) % slots.size()]; }
+    [[nodiscard]] bool finished(const FrameSlot& slot) const;
 
     // executor_memory.cpp: making objects
-    [[nodiscard]] MemoryRequirement requirement_of(const GraphDesc& graph, std::uint32_t resource) const;
+    [[nodiscard]] MemoryRequirement requirement_of(const ResourceDesc& desc, VkFlags usage) const;
     [[nodiscard]] ObjectKey key_of(std::uint32_t resource) const;
     [[nodiscard]] tl::expected<std::unique_ptr<TransientSet>, ExecuteError> create_transients();
     [[nodiscard]] tl::expected<std::unique_ptr<HistoryPair>, ExecuteError> create_history(const ObjectKey& key,
@@ -208,37 +220,45 @@ public:
     [[nodiscard]] bool make_room();
     void destroy(std::vector<PhysicalObject>& objects, std::vector<VkDeviceMemory>& memory) const;
 
+    // executor_context.cpp: what a callback may ask for
+    [[nodiscard]] const AccessDesc* declared_access(std::uint32_t pass, std::uint32_t resource, std::uint32_t version,
+                                                    ResourceKind kind, VkFlags usage);
+    [[nodiscard]] VkImageView declared_view(std::uint32_t pass, Image image, const ViewDesc& desc, VkFlags usage);
+    /// Adds to the frame's error that `pass` used what it did not declare.
+    void report_undeclared(std::uint32_t pass, const std::string& what);
+
     // executor_record.cpp: commands
-    void map_queues(bool all_onto_first);
-    void plan_segments();
-    void plan_exits();
     [[nodiscard]] Result record_segments();
-    [[nodiscard]] Result record_into(VkCommandBuffer cmd);
+    void record_into(VkCommandBuffer cmd);
     [[nodiscard]] Result begin_segment(Segment& segment);
     void record_batch(VkCommandBuffer cmd, std::uint32_t batch);
     void record_pass(VkCommandBuffer cmd, const PlannedPass& planned);
-    void begin_rendering(VkCommandBuffer cmd, const PlannedPass& planned, VkExtent2D& extent);
-    void begin_labels(VkCommandBuffer cmd, const std::string& name) const;
+    [[nodiscard]] VkExtent2D begin_rendering(VkCommandBuffer cmd, const PlannedPass& planned);
+
+    // executor_submit.cpp: logical queues onto real ones, segments, semaphores
+    void map_queues();
+    void plan_segments();
+    void plan_semaphores();
     [[nodiscard]] Result submit_segments();
 
     // executor_barriers.cpp: the plan's dependencies as barriers of the real queues
-    void whole_memory_barrier(VkCommandBuffer cmd) const;
-    void prepare_histories(VkCommandBuffer cmd, std::uint32_t real_queue);
-    [[nodiscard]] bool needs_preparation(std::uint32_t real_queue) const;
     void add_before_consumer(const Dependency& dependency);
     void add_at_batch_end(const Dependency& dependency);
     void add_exit(const Dependency& dependency);
-    void add_barrier(const Dependency& dependency, VkPipelineStageFlags2 src_stages, VkAccessFlags2 src_access,
-                     VkPipelineStageFlags2 dst_stages, VkAccessFlags2 dst_access, std::uint32_t src_family,
-                     std::uint32_t dst_family);
+    void add_history_preparations(std::uint32_t real_queue);
+    [[nodiscard]] std::uint32_t preparing_queue(const HistoryPair& pair) const;
     void flush_barriers(VkCommandBuffer cmd);
+    void whole_barrier(VkCommandBuffer cmd) const;
 
     // executor_timing.cpp
-    [[nodiscard]] Result prepare_queries(std::uint32_t pass_count);
+    [[nodiscard]] Result prepare_queries();
+    [[nodiscard]] bool timed(std::uint32_t real_queue) const;
     void reset_queries(VkCommandBuffer cmd, std::uint32_t real_queue, std::uint32_t pass_count);
     void write_timestamp(VkCommandBuffer cmd, std::uint32_t query) const;
-    [[nodiscard]] bool read_timings(FrameSlot& slot);
-    [[nodiscard]] std::string unfinished_passes() const;
+    [[nodiscard]] bool read_timings(const FrameSlot& slot);
+    [[nodiscard]] std::vector<PassTiming> timings();
+    /// Adds to a device loss the passes that began and did not end, or what was last submitted.
+    [[nodiscard]] ExecuteError explained(ExecuteError error) const;
 
     ExecutorInfo info;
     DeviceTable vk = {};

@@ -1,0 +1,62 @@
+// What each subcommand is told.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace tyndall::samples {
+
+struct Size {
+    std::uint32_t width = 1280;
+    std::uint32_t height = 720;
+};
+/// "1280x720"; each side 1 to 16384. The error is one sentence.
+[[nodiscard]] tl::expected<Size, std::string> parse_size(std::string_view text);
+
+enum class Queues : std::uint8_t { one, two };
+
+struct RenderArguments {
+    std::filesystem::path scene;
+    std::optional<std::filesystem::path> fog;       ///< absent: `<scene>.fog.json` beside the scene if there is one
+    std::optional<std::filesystem::path> particles; ///< absent: `<scene>.particles.json` likewise
+    bool no_fog = false;
+    bool no_particles = false;
+    std::uint32_t camera = 0;
+    Size size;
+    std::uint32_t frames = 16;
+    double time_s = 4.0;            ///< of the first frame
+    double frame_interval_s = 0.0;  ///< between frames; 0: a still, accumulated over its frames
+    std::optional<double> exposure_ev100;
+    std::vector<std::filesystem::path> outputs; ///< .png and .exr
+    std::optional<std::filesystem::path> explain_file;
+    bool explain = false;
+    std::optional<std::filesystem::path> timing_file;
+    bool timing = false;
+    std::optional<std::filesystem::path> stages_dir;
+    std::string device;
+    Queues queues = Queues::one; ///< two: the plan is made for graphics and async compute, and folded where there is one
+    bool validate = false;
+    bool fp32 = false; ///< scene colour in 32 bits, as --out *.exr does by itself
+    bool json = false;
+};
+
+struct InfoArguments {
+    std::string device;
+    bool json = false;
+};
+
+/// Exit codes of every subcommand.
+inline constexpr int exit_ok = 0;
+inline constexpr int exit_failed = 1;    ///< the device or the machine failed
+inline constexpr int exit_bad_input = 2; ///< what the user gave cannot be used
+
+[[nodiscard]] int run_render(const RenderArguments& arguments);
+[[nodiscard]] int run_info(const InfoArguments& arguments);
+
+} // namespace tyndall::samples

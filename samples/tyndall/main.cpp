@@ -1,0 +1,91 @@
+// The tool `tyndall`: one executable, one subcommand a use.
+#include <cstdio>
+#include <exception>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "samples/tyndall/arguments.hpp"
+
+namespace {
+
+using namespace tyndall::samples;
+
+int bad_input(const std::string& sentence) {
+    std::fprintf(stderr, "tyndall: %s\n", sentence.c_str());
+    return exit_bad_input;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Frame graph and volumetric light on Vulkan");
+    app.name("tyndall");
+    app.require_subcommand(1);
+
+    RenderArguments render;
+    std::string size = "1280x720";
+    std::string queues = "one";
+    CLI::App* render_command = app.add_subcommand("render", "Render a glTF scene, with fog and particles, to images");
+    render_command->add_option("scene", render.scene, "glTF file (.gltf or .glb)")->required();
+    render_command->add_option("--fog", render.fog, "fog description; without it <scene>.fog.json, if there is one");
+    render_command->add_option("--particles", render.particles, "emitters; without it <scene>.particles.json, if there is one");
+    render_command->add_flag("--no-fog", render.no_fog, "leave the fog out");
+    render_command->add_flag("--no-particles", render.no_particles, "leave the particles out");
+    render_command->add_option("--camera", render.camera, "index of the scene's camera")->capture_default_str();
+    render_command->add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    render_command->add_option("--frames", render.frames, "frames to render; the last one is written")
+        ->check(CLI::Range(1U, 1000000U))
+        ->capture_default_str();
+    render_command->add_option("--time", render.time_s, "time of the first frame, s")->capture_default_str();
+    render_command->add_option("--interval", render.frame_interval_s, "time between frames, s")->capture_default_str();
+    render_command->add_option("--exposure", render.exposure_ev100, "EV100; without it, from the image");
+    render_command->add_option("--out", render.outputs, "image to write, .png or .exr; may be given several times")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    render_command->add_flag("--explain", render.explain, "print what each pass is, where it runs and why");
+    render_command->add_option("--explain-file", render.explain_file, "write that table to a file");
+    render_command->add_flag("--timing", render.timing, "print milliseconds of each pass, median over the frames");
+    render_command->add_option("--timing-file", render.timing_file, "write that table to a file");
+    render_command->add_option("--dump-stages", render.stages_dir, "write a picture of each intermediate to a folder");
+    render_command->add_option("--device", render.device, "part of a device's name, or its index; see tyndall info");
+    render_command->add_option("--queues", queues, "queues that the plan is made for: one or two")
+        ->check(CLI::IsMember({"one", "two"}))
+        ->capture_default_str();
+    render_command->add_flag("--validate", render.validate, "run under the Khronos validation layer; a message fails the run");
+    render_command->add_flag("--fp32", render.fp32, "32-bit scene colour and froxels");
+    render_command->add_flag("--json", render.json, "print the timing table as JSON");
+
+    InfoArguments info;
+    CLI::App* info_command = app.add_subcommand("info", "List devices, their queues and what is supported");
+    info_command->add_option("--device", info.device, "part of a device's name, or its index");
+    info_command->add_flag("--json", info.json, "print JSON");
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        return bad_input(error.what());
+    }
+    if (render_command->parsed()) {
+        const tl::expected<Size, std::string> parsed = parse_size(size);
+        if (!parsed) {
+            return bad_input(parsed.error());
+        }
+        render.size = *parsed;
+        render.queues = queues == "two" ? Queues::two : Queues::one;
+        return run_render(render);
+    }
+    return run_info(info);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "tyndall: %s\n", error.what());
+        return exit_failed;
+    }
+}
