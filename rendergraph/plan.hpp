@@ -59,7 +59,8 @@ enum class QueueReason : std::uint8_t {
     asked_for,
     default_graphics,
     asked_for_but_no_such_queue,
-    async_switched_off
+    async_switched_off,
+    import_not_shared, ///< it touches an import that other families use too, and that the host does not share
 };
 enum class Hazard : std::uint8_t {
     read_after_write,

@@ -149,6 +149,8 @@ std::string why_queue(const PlannedPass& pass) {
     case QueueReason::default_graphics: return "no other queue asked for";
     case QueueReason::asked_for_but_no_such_queue: return "another queue asked for, but there is none";
     case QueueReason::async_switched_off: return "asynchronous queues are switched off";
+    case QueueReason::import_not_shared:
+        return "another queue asked for, but the host does not share an import between families";
     }
     return "";
 }

@@ -16,6 +16,11 @@ struct QueueChoice {
     QueueReason reason = QueueReason::default_graphics;
 };
 
+bool same_queues(const std::vector<QueueChoice>& a, const std::vector<QueueChoice>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const QueueChoice& x, const QueueChoice& y) { return x.queue == y.queue; });
+}
+
 QueueChoice choose_queue(const PassDesc& pass, const QueueTopology& topology, bool async) {
     if (pass.kind == PassKind::graphics) {
         return {0, QueueReason::only_queue_that_can};
@@ -34,6 +39,28 @@ QueueChoice choose_queue(const PassDesc& pass, const QueueTopology& topology, bo
         }
     }
     return {0, QueueReason::asked_for_but_no_such_queue};
+}
+
+/// An import is EXCLUSIVE unless the host says that it shares it. Its passes then stay in one family: those that asked
+/// for another queue go back to graphics if the import is used elsewhere too.
+void keep_unshared_imports_together(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,
+                                    std::vector<QueueChoice>& choices) {
+    const auto family = [&](std::uint32_t pass) { return topology.queues[choices[pass].queue].family; };
+    std::vector<std::uint32_t> family_of(graph.resources.size(), none);
+    std::vector<bool> torn(graph.resources.size(), false);
+    for (const AccessDesc& access : graph.accesses) {
+        const ResourceDesc& resource = graph.resources[access.resource];
+        if (kept.pass[access.pass] && resource.import != none && !resource.concurrent) {
+            std::uint32_t& known = family_of[access.resource];
+            torn[access.resource] = torn[access.resource] || (known != none && known != family(access.pass));
+            known = family(access.pass);
+        }
+    }
+    for (const AccessDesc& access : graph.accesses) {
+        if (torn[access.resource] && choices[access.pass].queue != 0) {
+            choices[access.pass] = {0, QueueReason::import_not_shared};
+        }
+    }
 }
 
 /// Merges accesses of one pass to the same cells of one resource into one use.
@@ -235,12 +262,22 @@ Schedule schedule(const GraphDesc& graph, const QueueTopology& topology, const C
     Schedule schedule;
     schedule.queue_count = static_cast<std::uint32_t>(topology.queues.size());
     schedule.slot_of.assign(graph.passes.size(), none);
+    std::vector<QueueChoice> choices;
+    for (const PassDesc& pass : graph.passes) {
+        choices.push_back(choose_queue(pass, topology, async));
+    }
+    // Moving a pass may tear another import that it shares with a pass still elsewhere: again, until nothing moves.
+    // Each round moves at least one pass to graphics, so it ends.
+    for (std::vector<QueueChoice> before; before.size() != choices.size() || !same_queues(before, choices);) {
+        before = choices;
+        keep_unshared_imports_together(graph, topology, kept, choices);
+    }
     std::vector<std::uint32_t> next_position(topology.queues.size(), 0);
     for (const std::uint32_t pass : order.passes) {
         if (!kept.pass[pass]) {
             continue;
         }
-        const QueueChoice choice = choose_queue(graph.passes[pass], topology, async);
+        const QueueChoice choice = choices[pass];
         schedule.slot_of[pass] = static_cast<std::uint32_t>(schedule.order.size());
         schedule.order.push_back(pass);
         schedule.queue.push_back(choice.queue);

@@ -596,7 +596,13 @@ private:
 
     void exits() {
         for (std::uint32_t d = plan_.first_exit_barrier; d < plan_.first_exit_barrier + plan_.exit_barrier_count; ++d) {
-            barriers(plan_.dependencies[d].src_queue, {&plan_.dependencies[d]}, false, none);
+            // Stages that ran on other queues were waited for by the last use; this queue names them as all commands.
+            Dependency leaving = plan_.dependencies[d];
+            const bool foreign = plan_.topology.queues[leaving.src_queue].kind != QueueKind::graphics &&
+                                 (leaving.src_stages & only_graphics_stages) != 0;
+            leaving.src_stages = foreign ? all_commands : leaving.src_stages;
+            leaving.src_access = foreign ? VkAccessFlags2{VK_ACCESS_2_MEMORY_WRITE_BIT} : leaving.src_access;
+            barriers(leaving.src_queue, {&leaving}, false, none);
         }
         for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
             const ResourceDesc& resource = graph_.resources[r];

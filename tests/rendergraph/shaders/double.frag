@@ -1,0 +1,8 @@
+// Twice the source's texel at the same place.
+#version 460
+layout(set = 0, binding = 0) uniform sampler2D source;
+layout(location = 0) out vec4 color;
+
+void main() {
+    color = 2.0 * texelFetch(source, ivec2(gl_FragCoord.xy), 0);
+}
