@@ -85,14 +85,14 @@ ExecutorState::Result ExecutorState::bind_imports(std::span<const ImportBinding>
                 return is_image ? entry->objects.front().image == binding->image
                                 : entry->objects.front().buffer == binding->buffer;
             });
-            if (known == imports.end()) {
-                auto entry = std::make_unique<ImportedObject>();
-                entry->objects.push_back({.image = is_image ? binding->image : VK_NULL_HANDLE,
-                                          .buffer = is_image ? VK_NULL_HANDLE : binding->buffer,
-                                          .owned = false});
-                imports.push_back(std::move(entry));
+            const bool is_new = known == imports.end();
+            if (is_new) {
+                imports.push_back(std::make_unique<ImportedObject>());
+                imports.back()->objects.push_back({.image = is_image ? binding->image : VK_NULL_HANDLE,
+                                                   .buffer = is_image ? VK_NULL_HANDLE : binding->buffer,
+                                                   .owned = false});
             }
-            ImportedObject& entry = known == imports.end() ? *imports.back() : **known;
+            ImportedObject& entry = is_new ? *imports.back() : **known;
             entry.last_used = work.number;
             work.objects[resource] = &entry.objects.front();
         }
@@ -127,7 +127,8 @@ bool ExecutorState::matches(const TransientSet& set) const {
 ExecutorState::Result ExecutorState::bind_transients() {
     const auto known =
         std::find_if(transients.begin(), transients.end(), [&](const auto& set) { return matches(*set); });
-    if (known == transients.end()) {
+    const bool is_new = known == transients.end();
+    if (is_new) {
         if (transients.size() >= transient_sets_kept) {
             const auto oldest =
                 std::min_element(transients.begin(), transients.end(),
@@ -141,7 +142,7 @@ ExecutorState::Result ExecutorState::bind_transients() {
         }
         transients.push_back(std::move(*made));
     }
-    TransientSet& set = known == transients.end() ? *transients.back() : **known;
+    TransientSet& set = is_new ? *transients.back() : **known;
     set.last_used = work.number;
     for (std::uint32_t resource = 0; resource < set.entries.size(); ++resource) {
         if (set.entries[resource].placed) {

@@ -1,0 +1,142 @@
+#include "engine/particle_passes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "spirv/particle_merge_block.h"
+#include "spirv/particle_simulation.h"
+#include "spirv/particle_sort_block.h"
+#include "spirv/particle_sort_exchange.h"
+#include "spirv/particle_split.h"
+
+namespace tyndall::engine {
+namespace {
+
+/// Lanes of a workgroup: every device has room for so many.
+constexpr std::uint32_t simulation_group = 64;
+constexpr std::uint32_t split_group = 64;
+constexpr std::uint32_t exchange_group = 256;
+/// Of the steps in shared memory: each lane has eight pairs of a full block, so that few lanes meet at a barrier.
+constexpr std::uint32_t block_group = 128;
+
+constexpr std::uint32_t groups_for(std::uint32_t items, std::uint32_t group) {
+    return (items + group - 1) / group;
+}
+
+constexpr ParticleBinding storage(std::uint32_t binding) {
+    return {binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT};
+}
+constexpr ParticleBinding three_buffers[] = {storage(0), storage(1), storage(2)};
+constexpr ParticleBinding one_buffer[] = {storage(0)};
+
+struct SortPush {
+    std::uint32_t key_count = 0;
+    std::uint32_t sequence = 0; ///< length of the runs that the merge makes
+    std::uint32_t stride = 0;   ///< distance of the keys that an exchange compares
+};
+struct SplitPush {
+    std::uint32_t key_count = 0;
+    std::uint32_t split_count = 0;
+};
+
+template <typename Push>
+void push_constants(rg::PassContext& ctx, const ParticleProgram& program, const Push& push) {
+    ctx.vk().CmdPushConstants(ctx.cmd(), program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
+}
+
+void dispatch(rg::PassContext& ctx, const ParticleProgram& program, std::uint32_t groups) {
+    ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
+    ctx.vk().CmdDispatch(ctx.cmd(), groups, 1, 1);
+}
+
+void declare_sort_step(rg::GraphBuilder& graph, std::string_view name, rg::Buffer& keys, const ParticleProgram& program,
+                       const SortPush& push, std::uint32_t groups) {
+    rg::PassBuilder pass = graph.add_pass(name, rg::PassKind::compute);
+    pass.modifies(keys, rg::Access::storage_compute);
+    pass.executes([keys, program, push, groups](rg::PassContext& ctx) {
+        const std::array bindings{ctx.storage(0, keys)};
+        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        push_constants(ctx, program, push);
+        dispatch(ctx, program, groups);
+    });
+}
+
+} // namespace
+
+tl::expected<std::unique_ptr<ParticlePasses>, Error> ParticlePasses::create(const ParticleDevice& device) {
+    std::unique_ptr<ParticlePasses> passes(new ParticlePasses(device));
+    if (auto made = passes->make_programs(); !made) {
+        return tl::unexpected(made.error());
+    }
+    return passes;
+}
+
+tl::expected<void, Error> ParticlePasses::make_programs() {
+    struct Wanted {
+        ParticleProgram& program;
+        std::span<const std::uint32_t> spirv;
+        std::span<const ParticleBinding> bindings;
+        std::uint32_t push_bytes;
+        std::vector<std::uint32_t> constants;
+    };
+    const Wanted wanted[] = {
+        {simulation_, particle_simulation, three_buffers, 0, {simulation_group}},
+        {sort_block_, particle_sort_block, one_buffer, sizeof(SortPush), {block_group, largest_block}},
+        {exchange_, particle_sort_exchange, one_buffer, sizeof(SortPush), {exchange_group}},
+        {merge_block_, particle_merge_block, one_buffer, sizeof(SortPush), {block_group, largest_block}},
+        {split_, particle_split, three_buffers, sizeof(SplitPush), {split_group}},
+    };
+    for (const Wanted& w : wanted) {
+        const auto made = programs_.compute(w.spirv, w.bindings, w.push_bytes, w.constants);
+        if (!made) {
+            return tl::unexpected(made.error());
+        }
+        w.program = *made;
+    }
+    return {};
+}
+
+void ParticlePasses::declare_simulation(rg::GraphBuilder& graph, rg::Buffer frame, rg::Buffer& particles,
+                                        rg::Buffer& keys, std::uint32_t key_count) const {
+    rg::PassBuilder pass = graph.add_pass("particle simulation", rg::PassKind::compute);
+    pass.reads(frame, rg::Access::storage_compute)
+        .writes(particles, rg::Access::storage_compute)
+        .writes(keys, rg::Access::storage_compute);
+    pass.executes([frame, particles, keys, key_count, program = simulation_](rg::PassContext& ctx) {
+        const std::array bindings{ctx.storage(0, frame), ctx.storage(1, particles), ctx.storage(2, keys)};
+        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        dispatch(ctx, program, groups_for(key_count, simulation_group));
+    });
+}
+
+void ParticlePasses::declare_sort(rg::GraphBuilder& graph, rg::Buffer& keys, std::uint32_t key_count) const {
+    const std::uint32_t block = std::min(largest_block, key_count);
+    const std::uint32_t blocks = key_count / block;
+    declare_sort_step(graph, "particle sort", keys, sort_block_, {key_count, 0, 0}, blocks);
+    // Runs of twice the length each time, until one run holds all.
+    for (std::uint32_t sequence = 2 * block; sequence <= key_count; sequence *= 2) {
+        const std::string name = "particle merge " + std::to_string(sequence);
+        for (std::uint32_t stride = sequence / 2; stride >= block; stride /= 2) {
+            declare_sort_step(graph, name + " by " + std::to_string(stride), keys, exchange_,
+                              {key_count, sequence, stride}, groups_for(key_count / 2, exchange_group));
+        }
+        declare_sort_step(graph, name, keys, merge_block_, {key_count, sequence, 0}, blocks);
+    }
+}
+
+void ParticlePasses::declare_split(rg::GraphBuilder& graph, rg::Buffer keys, rg::Buffer splits, rg::Buffer& draws,
+                                   std::uint32_t key_count, std::uint32_t split_count) const {
+    rg::PassBuilder pass = graph.add_pass("particle split", rg::PassKind::compute);
+    pass.reads(keys, rg::Access::storage_compute)
+        .reads(splits, rg::Access::storage_compute)
+        .writes(draws, rg::Access::storage_compute);
+    pass.executes([keys, splits, draws, key_count, split_count, program = split_](rg::PassContext& ctx) {
+        const std::array bindings{ctx.storage(0, keys), ctx.storage(1, splits), ctx.storage(2, draws)};
+        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        push_constants(ctx, program, SplitPush{key_count, split_count});
+        dispatch(ctx, program, groups_for(split_count + 1, split_group));
+    });
+}
+
+} // namespace tyndall::engine

@@ -1,0 +1,16 @@
+# The shaders of particles, for the target tyndall_engine.
+tyndall_shader(tyndall_engine engine/particle_simulation.comp NAME particle_simulation)
+tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_sort_block DEFINES STEP=0)
+tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_sort_exchange DEFINES STEP=1)
+tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_merge_block DEFINES STEP=2)
+tyndall_shader(tyndall_engine engine/particle_split.comp NAME particle_split)
+tyndall_shader(tyndall_engine engine/particle.frag NAME particle_fragment)
+tyndall_shader(tyndall_engine engine/particle.vert NAME particle_scattering DEFINES SCATTERING=1)
+# What is bound differs between these, so they are variants and not specialization constants: every declared binding must
+# be written.
+foreach(sun_shadow 0 1)
+    foreach(lights 0 1)
+        tyndall_shader(tyndall_engine engine/particle.vert NAME particle_direct_s${sun_shadow}_l${lights}
+                       DEFINES SCATTERING=0 SUN_SHADOW=${sun_shadow} LIGHTS=${lights})
+    endforeach()
+endforeach()

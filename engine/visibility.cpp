@@ -1,0 +1,70 @@
+#include "engine/visibility.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tyndall::engine {
+namespace {
+
+const Material& material_of(const Scene& scene, const Instance& instance) {
+    return scene.materials[scene.primitives[instance.primitive].material];
+}
+
+/// Light passes through what is blended: it throws no shadow.
+bool casts_shadow(const Scene& scene, const Instance& instance) {
+    return material_of(scene, instance).alpha_mode != AlphaMode::blend && !instance.box.empty();
+}
+
+} // namespace
+
+DrawLists visible_instances(const Scene& scene, const FrameView& view) {
+    using Keyed = std::pair<double, std::uint32_t>;
+    const Frustum frustum = make_frustum(view);
+    std::vector<Keyed> surfaces;
+    std::vector<Keyed> transparents;
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        if (instance.box.empty() || !may_be_visible(frustum, instance.box, view.origin_m)) {
+            continue;
+        }
+        const double depth_m = view_depth_m(view, instance.box.center());
+        if (material_of(scene, instance).alpha_mode == AlphaMode::blend) {
+            transparents.emplace_back(-depth_m, i);
+        } else {
+            surfaces.emplace_back(depth_m - instance.sphere.radius_m, i);
+        }
+    }
+    std::sort(surfaces.begin(), surfaces.end());
+    std::sort(transparents.begin(), transparents.end());
+    DrawLists lists;
+    for (const Keyed& surface : surfaces) {
+        lists.surfaces.push_back(surface.second);
+    }
+    for (const auto& [minus_depth_m, instance] : transparents) {
+        lists.transparents.push_back(instance);
+        lists.transparent_depths_m.push_back(static_cast<float>(-minus_depth_m));
+    }
+    return lists;
+}
+
+std::vector<std::uint32_t> shadow_casters(const Scene& scene, const CascadesFit& fit, std::uint32_t cascade) {
+    std::vector<std::uint32_t> casters;
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (casts_shadow(scene, scene.instances[i]) && may_cast_into(fit, cascade, scene.instances[i].box)) {
+            casters.push_back(i);
+        }
+    }
+    return casters;
+}
+
+Box caster_bounds(const Scene& scene) {
+    Box box;
+    for (const Instance& instance : scene.instances) {
+        if (casts_shadow(scene, instance)) {
+            box.grow(instance.box);
+        }
+    }
+    return box;
+}
+
+} // namespace tyndall::engine

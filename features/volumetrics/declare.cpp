@@ -1,0 +1,252 @@
+// The passes of the feature, as declared on the graph. Callbacks capture handles and plain data by value.
+#include <algorithm>
+#include <array>
+
+#include "features/volumetrics/feature_state.hpp"
+
+namespace tyndall::volumetrics {
+namespace {
+
+using rg::Access;
+using rg::Binding;
+using rg::PassContext;
+using rg::PassKind;
+
+/// A pipeline and the number of groups that cover its domain.
+struct Dispatch {
+    Program program;
+    std::array<std::uint32_t, 3> groups{1, 1, 1};
+};
+
+Dispatch covering(const Program& program, const GroupShape& group, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return {program, {(x + group[0] - 1) / group[0], (y + group[1] - 1) / group[1], (z + group[2] - 1) / group[2]}};
+}
+
+void run(PassContext& ctx, const Dispatch& dispatch, std::span<const Binding> bindings) {
+    ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.program.pipeline);
+    ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.program.layout, 0, bindings);
+    ctx.vk().CmdDispatch(ctx.cmd(), dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
+}
+
+VkFormat volume_format(const Settings& settings) {
+    return settings.storage == StorageFormat::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+rg::ImageDesc froxel_image(const Settings& settings) {
+    return {.format = volume_format(settings),
+            .extent = {settings.grid.width, settings.grid.height, settings.grid.slices},
+            .type = VK_IMAGE_TYPE_3D};
+}
+
+constexpr rg::ViewDesc array_view{.range = {}, .type = VK_IMAGE_VIEW_TYPE_2D_ARRAY};
+constexpr rg::ViewDesc depth_array_view{.range = {.aspects = VK_IMAGE_ASPECT_DEPTH_BIT},
+                                        .type = VK_IMAGE_VIEW_TYPE_2D_ARRAY};
+constexpr rg::ViewDesc depth_view{.range = {.aspects = VK_IMAGE_ASPECT_DEPTH_BIT}, .type = VK_IMAGE_VIEW_TYPE_2D};
+
+} // namespace
+
+void Feature::State::declare_density(rg::GraphBuilder& graph) {
+    const Settings& settings = frame->inputs.settings;
+    rg::Image density = graph.create_image("fog density", froxel_image(settings));
+    const Dispatch dispatch = covering(frame->density_injection, row_group(settings.grid.width), settings.grid.width,
+                                       settings.grid.height, settings.grid.slices);
+    auto pass = graph.add_pass("density injection", PassKind::compute);
+    pass.on_queue(wish())
+        .reads(frame->parameter_buffer, Access::uniform_compute)
+        .writes(density, Access::storage_compute);
+    pass.executes([=, parameters = frame->parameter_buffer](PassContext& ctx) {
+        run(ctx, dispatch, std::array{ctx.uniform(0, parameters), ctx.storage(1, density)});
+    });
+    frame->stages.density = density;
+}
+
+void Feature::State::declare_clustering(rg::GraphBuilder& graph) {
+    const gpu::LightClusters& c = frame->cluster_parameters;
+    const std::uint32_t words = c.counts.x * c.counts.y * c.counts.z * c.block.w;
+    const HostBuffers::Slot& slot = host_buffers->slot(frame->inputs.frame_slot);
+    const rg::Buffer parameters = graph.import_buffer("light cluster parameters",
+                                                      {.size_bytes = sizeof(gpu::LightClusters)}, {.read_only = true});
+    import_bindings.push_back({.resource = parameters.resource, .buffer = slot.clusters});
+    rg::Buffer masks = graph.create_buffer("light cluster masks", {.size_bytes = VkDeviceSize{words} * 4});
+    const Dispatch dispatch = covering(frame->light_clustering, {64, 1, 1}, words, 1, 1);
+    auto pass = graph.add_pass("light clustering", PassKind::compute);
+    pass.on_queue(wish())
+        .reads(frame->parameter_buffer, Access::uniform_compute)
+        .reads(parameters, Access::uniform_compute)
+        .reads(frame->light_buffer, Access::storage_compute)
+        .writes(masks, Access::storage_compute);
+    pass.executes([=, volume = frame->parameter_buffer, lights = frame->light_buffer](PassContext& ctx) {
+        run(ctx, dispatch,
+            std::array{ctx.uniform(0, volume), ctx.uniform(1, parameters), ctx.storage(2, lights),
+                       ctx.storage(3, masks)});
+    });
+    frame->clusters = ClusterResources{masks, parameters};
+}
+
+tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, const ShadowResources& shadow) {
+    const rg::ImageDesc* cascades = graph.describe(shadow.cascades);
+    if (cascades == nullptr || !shadow.parameters.valid()) {
+        return tl::unexpected(
+            Error{"The sun casts shadows, so declare_after_shadow_maps needs cascades and parameters."});
+    }
+    if (cascades->extent.width != cascades->extent.height || cascades->extent.width < 32 || cascades->layers > 4) {
+        return tl::unexpected(Error{"The sun's cascades must be square, at least 32 texels wide, and at most 4."});
+    }
+    const std::uint32_t source_size = cascades->extent.width;
+    std::uint32_t size = frame->inputs.settings.shadow.esm_size;
+    while (size * 2 > source_size) {
+        size /= 2;
+    }
+    const auto texels = static_cast<float>(size);
+    const auto source_texels = static_cast<float>(source_size);
+    frame->parameters.esm_size = glm::vec4(texels, 1.0F / texels, source_texels, 1.0F / source_texels);
+    host_buffers->write(frame->inputs.frame_slot, frame->parameters);
+
+    const GroupShape group = row_group(size);
+    const auto downsample = pipelines.compute(esm_downsample_shader(), group);
+    const auto blur_x = pipelines.compute(esm_blur_shader(), group, std::array{0U});
+    const auto blur_y = pipelines.compute(esm_blur_shader(), group, std::array{1U});
+    for (const auto* program : {&downsample, &blur_x, &blur_y}) {
+        if (!*program) {
+            return tl::unexpected(program->error());
+        }
+    }
+    const rg::ImageDesc esm_desc{.format = VK_FORMAT_R32_SFLOAT, .extent = {size, size, 1}, .layers = cascades->layers};
+    const std::uint32_t layers = cascades->layers;
+    rg::Image esm = graph.create_image("sun ESM", esm_desc);
+    auto down = graph.add_pass("ESM downsample", PassKind::compute);
+    down.on_queue(wish())
+        .reads(frame->parameter_buffer, Access::uniform_compute)
+        .reads(shadow.cascades, Access::sampled_compute)
+        .writes(esm, Access::storage_compute);
+    down.executes([=, dispatch = covering(*downsample, group, size, size, layers), parameters = frame->parameter_buffer,
+                   depth = shadow.cascades, sampler = nearest](PassContext& ctx) {
+        run(ctx, dispatch,
+            std::array{ctx.uniform(0, parameters), ctx.sampled(1, depth, sampler, depth_array_view),
+                       ctx.storage(2, esm, array_view)});
+    });
+
+    const auto blur = [&](const char* pass_name, const char* image_name, const Program& program, rg::Image source) {
+        rg::Image blurred = graph.create_image(image_name, esm_desc);
+        auto pass = graph.add_pass(pass_name, PassKind::compute);
+        pass.on_queue(wish()).reads(source, Access::storage_compute).writes(blurred, Access::storage_compute);
+        pass.executes([=, dispatch = covering(program, group, size, size, layers)](PassContext& ctx) {
+            run(ctx, dispatch, std::array{ctx.storage(0, source, array_view), ctx.storage(1, blurred, array_view)});
+        });
+        return blurred;
+    };
+    const rg::Image across = blur("ESM blur x", "sun ESM, blurred in x", *blur_x, esm);
+    frame->stages.esm = blur("ESM blur y", "sun ESM, blurred", *blur_y, across);
+    return {};
+}
+
+tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& graph, const ShadowResources& shadow) {
+    const FrameInputs& inputs = frame->inputs;
+    const LightingVariant variant{.storage = inputs.settings.storage,
+                                  .sun_shadow = frame->sun_shadow,
+                                  .lights = frame->lights,
+                                  .history = inputs.settings.temporal.enabled};
+    const GridSettings& grid = inputs.settings.grid;
+    const GroupShape group = row_group(grid.width);
+    const std::uint32_t has_sun = inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F) ? 1 : 0;
+    const auto program = pipelines.compute(froxel_lighting_shader(variant), group, std::array{has_sun});
+    if (!program) {
+        return tl::unexpected(program.error());
+    }
+
+    rg::Image in_scattered = graph.create_image("in-scattered radiance", froxel_image(inputs.settings));
+    rg::Image history;
+    auto pass = graph.add_pass("froxel lighting", PassKind::compute);
+    pass.on_queue(wish()).reads(frame->parameter_buffer, Access::uniform_compute);
+    if (variant.history) {
+        history = graph.history_of(in_scattered);
+        pass.reads(history, Access::sampled_compute);
+    }
+    if (variant.sun_shadow) {
+        pass.reads(frame->stages.esm, Access::sampled_compute).reads(shadow.parameters, Access::uniform_compute);
+    }
+    if (variant.lights != LocalLights::none) {
+        pass.reads(frame->light_buffer, Access::storage_compute);
+    }
+    if (variant.lights == LocalLights::clustered) {
+        pass.reads(frame->clusters->parameters, Access::uniform_compute)
+            .reads(frame->clusters->masks, Access::storage_compute);
+    }
+    pass.writes(in_scattered, Access::storage_compute);
+    pass.executes([=, dispatch = covering(*program, group, grid.width, grid.height, grid.slices),
+                   parameters = frame->parameter_buffer, esm = frame->stages.esm, cascades = shadow.parameters,
+                   lights = frame->light_buffer, clusters = frame->clusters.value_or(ClusterResources{}),
+                   cold = frame->cold, linear_sampler = linear, nearest_sampler = nearest](PassContext& ctx) {
+        std::array<Binding, 8> bindings{};
+        std::size_t count = 0;
+        bindings[count++] = ctx.uniform(0, parameters);
+        bindings[count++] = ctx.storage(1, in_scattered);
+        if (variant.sun_shadow) {
+            bindings[count++] = ctx.sampled(2, esm, nearest_sampler, array_view);
+            bindings[count++] = ctx.uniform(3, cascades);
+        }
+        if (variant.lights != LocalLights::none) {
+            bindings[count++] = ctx.storage(4, lights);
+        }
+        if (variant.lights == LocalLights::clustered) {
+            bindings[count++] = ctx.uniform(5, clusters.parameters);
+            bindings[count++] = ctx.storage(6, clusters.masks);
+        }
+        if (variant.history) {
+            bindings[count++] = ctx.sampled(7, history, linear_sampler);
+            const std::uint32_t valid = !cold && ctx.history_valid(history) ? 1 : 0;
+            ctx.vk().CmdPushConstants(ctx.cmd(), dispatch.program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 4, &valid);
+        }
+        run(ctx, dispatch, std::span(bindings).first(count));
+    });
+    frame->volume = VolumeResources{.in_scattered = in_scattered, .parameters = frame->parameter_buffer};
+    return {};
+}
+
+tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder& graph) {
+    const Settings& settings = frame->inputs.settings;
+    const GridSettings& grid = settings.grid;
+    const GroupShape group = row_group(grid.width, 32); // few columns: small groups keep all cores busy
+    const auto program = pipelines.compute(accumulation_shader(settings.storage), group);
+    if (!program) {
+        frame->volume.reset();
+        return tl::unexpected(program.error());
+    }
+    rg::Image accumulated = graph.create_image(
+        "accumulated fog",
+        {.format = volume_format(settings), .extent = {grid.width, grid.height, 1}, .layers = grid.slices + 1});
+    auto pass = graph.add_pass("fog accumulation", PassKind::compute);
+    pass.on_queue(wish())
+        .reads(frame->parameter_buffer, Access::uniform_compute)
+        .reads(frame->stages.density, Access::storage_compute)
+        .reads(frame->volume->in_scattered, Access::storage_compute)
+        .writes(accumulated, Access::storage_compute);
+    pass.executes([=, dispatch = covering(*program, group, grid.width, grid.height, 1),
+                   parameters = frame->parameter_buffer, density = frame->stages.density,
+                   in_scattered = frame->volume->in_scattered](PassContext& ctx) {
+        run(ctx, dispatch,
+            std::array{ctx.uniform(0, parameters), ctx.storage(1, density), ctx.storage(2, in_scattered),
+                       ctx.storage(3, accumulated, array_view)});
+    });
+    frame->volume->accumulated = accumulated;
+    return {};
+}
+
+void Feature::State::declare_fog(rg::GraphBuilder& graph, const OpaqueResources& resources) {
+    auto pass = graph.add_pass("fog on opaque", PassKind::graphics);
+    pass.reads(frame->parameter_buffer, Access::uniform_graphics)
+        .reads(resources.depth, Access::sampled_fragment)
+        .reads(frame->volume->accumulated, Access::sampled_fragment)
+        .modifies(resources.color, Access::color_attachment);
+    pass.executes([program = frame->fog_on_opaque, parameters = frame->parameter_buffer, depth = resources.depth,
+                   accumulated = frame->volume->accumulated, linear_sampler = linear,
+                   nearest_sampler = nearest](PassContext& ctx) {
+        ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline);
+        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0,
+                 std::array{ctx.uniform(0, parameters), ctx.sampled(1, depth, nearest_sampler, depth_view),
+                            ctx.sampled(2, accumulated, linear_sampler, array_view)});
+        ctx.vk().CmdDraw(ctx.cmd(), 3, 1, 0, 0);
+    });
+}
+
+} // namespace tyndall::volumetrics

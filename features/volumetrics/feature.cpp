@@ -1,0 +1,267 @@
+#include "features/volumetrics/feature.hpp"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "features/volumetrics/feature_state.hpp"
+
+namespace tyndall::volumetrics {
+namespace {
+
+tl::expected<VkSampler, Error> make_sampler(const rg::DeviceTable& vk, VkDevice device, VkFilter filter) {
+    const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                   .magFilter = filter,
+                                   .minFilter = filter,
+                                   .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                   .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                   .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                   .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+    VkSampler sampler = VK_NULL_HANDLE;
+    if (vk.CreateSampler(device, &info, nullptr, &sampler) != VK_SUCCESS) {
+        return tl::unexpected(Error{"The device refused a sampler for the volumetrics."});
+    }
+    return sampler;
+}
+
+bool is_finite(const glm::dmat4& m) {
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            if (!std::isfinite(m[i][j])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+tl::expected<void, Error> validate(const FrameInputs& inputs, std::uint32_t slots) {
+    if (auto valid = validate(inputs.medium); !valid) {
+        return valid;
+    }
+    if (auto valid = validate(inputs.settings); !valid) {
+        return valid;
+    }
+    const glm::dmat4& p = inputs.camera.clip_from_view;
+    if (!is_finite(p) || !is_finite(inputs.camera.view_from_render) || p[0][0] == 0.0 || p[1][1] == 0.0) {
+        return tl::unexpected(Error{"camera must have finite matrices, and a projection that can be inverted."});
+    }
+    for (int i = 0; i < 3; ++i) {
+        if (!std::isfinite(inputs.camera.origin_m[i])) {
+            return tl::unexpected(Error{"camera.origin_m must be finite."});
+        }
+    }
+    if (inputs.sun) {
+        const glm::vec3& lux = inputs.sun->illuminance_lux;
+        for (int i = 0; i < 3; ++i) {
+            if (!(lux[i] >= 0.0F && lux[i] <= 1e9F)) {
+                return tl::unexpected(Error{"sun.illuminance_lux must be between 0 and 1e9."});
+            }
+        }
+        if (!(std::abs(glm::length(inputs.sun->direction) - 1.0F) < 1e-3F)) {
+            return tl::unexpected(Error{"sun.direction must have unit length."});
+        }
+    }
+    if (!std::isfinite(inputs.time_s)) {
+        return tl::unexpected(Error{"time_s must be finite."});
+    }
+    if (inputs.frame_slot >= slots) {
+        return tl::unexpected(Error{"frame_slot must be less than the feature's frames_in_flight."});
+    }
+    return {};
+}
+
+bool shines(const FrameInputs& inputs) {
+    return inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F);
+}
+
+} // namespace
+
+GroupShape row_group(std::uint32_t width, std::uint32_t longest) {
+    const std::uint32_t groups = (width + longest - 1) / longest;
+    return {((width + groups - 1) / groups + 7) / 8 * 8, 1, 1};
+}
+
+Feature::State::~State() {
+    vk->DestroySampler(device, linear, nullptr);
+    vk->DestroySampler(device, nearest, nullptr);
+}
+
+rg::QueueWish Feature::State::wish() const {
+    return frame->inputs.settings.async_compute ? rg::QueueWish::async_compute : rg::QueueWish::automatic;
+}
+
+tl::expected<void, Error> Feature::State::prepare_programs() {
+    const GridSettings& grid = frame->inputs.settings.grid;
+    const Medium& medium = frame->inputs.medium;
+    const std::array<std::uint32_t, 3> media{medium.homogeneous.extinction_per_m > 0.0F,
+                                             medium.height.extinction_per_m > 0.0F, medium.noise.amplitude > 0.0F};
+    auto density =
+        pipelines.compute(density_injection_shader(frame->inputs.settings.storage), row_group(grid.width), media);
+    if (!density) {
+        return tl::unexpected(density.error());
+    }
+    frame->density_injection = *density;
+    if (frame->lights == LocalLights::clustered) {
+        auto clustering = pipelines.compute(light_clustering_shader(), {64, 1, 1});
+        if (!clustering) {
+            return tl::unexpected(clustering.error());
+        }
+        frame->light_clustering = *clustering;
+    }
+    auto fog = pipelines.full_screen_blend(full_screen_shader(), fog_on_opaque_shader(), frame->inputs.color_format);
+    if (!fog) {
+        return tl::unexpected(fog.error());
+    }
+    frame->fog_on_opaque = *fog;
+    return {};
+}
+
+tl::expected<Feature, Error> Feature::create(const FeatureInfo& info) {
+    if (info.vk == nullptr || info.device == VK_NULL_HANDLE || info.frames_in_flight == 0) {
+        return tl::unexpected(
+            Error{"FeatureInfo must name a device, its function table and at least one frame in flight."});
+    }
+    auto buffers = HostBuffers::create(*info.vk, info.device, info.memory_properties, info.frames_in_flight);
+    if (!buffers) {
+        return tl::unexpected(buffers.error());
+    }
+    auto state = std::make_unique<State>(info, std::move(*buffers));
+    for (const bool is_linear : {true, false}) {
+        auto sampler = make_sampler(*info.vk, info.device, is_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
+        if (!sampler) {
+            return tl::unexpected(sampler.error());
+        }
+        (is_linear ? state->linear : state->nearest) = *sampler;
+    }
+    return Feature(std::move(state));
+}
+
+Feature::Feature(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Feature::Feature(Feature&&) noexcept = default;
+Feature& Feature::operator=(Feature&&) noexcept = default;
+Feature::~Feature() = default;
+
+tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
+    State& state = *state_;
+    state.frame.reset();
+    state.import_bindings.clear();
+    state.omissions.clear();
+    if (auto valid = validate(inputs, state.host_buffers->slot_count()); !valid) {
+        return valid;
+    }
+    if (is_empty(inputs.medium)) {
+        state.before.reset();
+        state.omit("all volumetric passes", "the medium is empty");
+        return {};
+    }
+
+    FrameState frame{.inputs = inputs};
+    frame.cold = starts_cold(inputs, state.before);
+    if (frame.cold) {
+        state.before.reset();
+    }
+    frame.parameters = volumetric_parameters(inputs, state.before);
+    frame.cluster_parameters = light_clusters(inputs.settings.grid, inputs.light_count, frame.parameters.volume.law);
+    frame.sun_shadow = shines(inputs) && inputs.sun->casts_shadows;
+    if (inputs.light_count > 0) {
+        const bool cluster = inputs.settings.clusters && inputs.light_count > 1;
+        frame.lights = cluster ? LocalLights::clustered : LocalLights::all;
+    }
+    state.frame = std::move(frame);
+    if (auto made = state.prepare_programs(); !made) {
+        state.frame.reset();
+        return made;
+    }
+    state.host_buffers->write(inputs.frame_slot, state.frame->parameters);
+    state.host_buffers->write(inputs.frame_slot, state.frame->cluster_parameters);
+    state.before = FrameMemory{.camera = inputs.camera,
+                               .volume = state.frame->parameters.volume,
+                               .storage = inputs.settings.storage,
+                               .frames_since_cut = state.frame->parameters.frame.x};
+    return {};
+}
+
+tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, const FrameBeginResources& resources) {
+    State& state = *state_;
+    if (!state.frame) {
+        return {};
+    }
+    FrameState& frame = *state.frame;
+    if (frame.lights != LocalLights::none && !resources.lights.valid()) {
+        return tl::unexpected(Error{"light_count is not 0, so declare_frame_begin needs the light buffer."});
+    }
+    frame.light_buffer = resources.lights;
+    const HostBuffers::Slot& slot = state.host_buffers->slot(frame.inputs.frame_slot);
+    frame.parameter_buffer = graph.import_buffer(
+        "volumetric parameters", {.size_bytes = sizeof(gpu::VolumetricParameters)}, {.read_only = true});
+    state.import_bindings.push_back({.resource = frame.parameter_buffer.resource, .buffer = slot.parameters});
+
+    if (frame.inputs.medium.noise.amplitude <= 0.0F) {
+        state.omit("density noise", "its amplitude is 0");
+    }
+    state.declare_density(graph);
+    if (frame.lights == LocalLights::clustered) {
+        state.declare_clustering(graph);
+    } else if (frame.lights == LocalLights::none) {
+        state.omit("light clustering", "there is no local light");
+    } else {
+        state.omit("light clustering",
+                   frame.inputs.light_count == 1 ? "there is one local light" : "it is switched off");
+    }
+    return {};
+}
+
+tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& graph,
+                                                             const ShadowResources& resources) {
+    State& state = *state_;
+    if (!state.frame) {
+        return {};
+    }
+    FrameState& frame = *state.frame;
+    if (frame.sun_shadow) {
+        if (auto declared = state.declare_esm(graph, resources); !declared) {
+            return declared;
+        }
+    } else {
+        state.omit("sun shadows (ESM downsample and blur)",
+                   shines(frame.inputs) ? "the sun casts no shadow" : "there is no sun");
+    }
+    if (!frame.inputs.settings.temporal.enabled) {
+        state.omit("temporal reprojection", "it is switched off");
+    }
+    if (auto declared = state.declare_lighting(graph, resources); !declared) {
+        return declared;
+    }
+    return state.declare_accumulation(graph);
+}
+
+void Feature::declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResources& resources) {
+    if (state_->frame && state_->frame->volume) {
+        state_->declare_fog(graph, resources);
+    }
+}
+
+const std::optional<ClusterResources>& Feature::clusters() const {
+    static const std::optional<ClusterResources> nothing;
+    return state_->frame ? state_->frame->clusters : nothing;
+}
+
+const std::optional<VolumeResources>& Feature::volume() const {
+    static const std::optional<VolumeResources> nothing;
+    return state_->frame ? state_->frame->volume : nothing;
+}
+
+const StageResources& Feature::stages() const {
+    static const StageResources nothing;
+    return state_->frame ? state_->frame->stages : nothing;
+}
+
+std::span<const rg::ImportBinding> Feature::bindings() const {
+    return state_->import_bindings;
+}
+std::span<const Omission> Feature::omissions() const {
+    return state_->omissions;
+}
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,112 @@
+// Volumetric light as passes on a frame graph that the feature is given. Once a frame, in this order:
+//
+//   feature.begin_frame(inputs);
+//   feature.declare_frame_begin(graph, {.lights = lights});             // at the point frame_begin
+//   feature.declare_after_shadow_maps(graph, {cascades, parameters});   // at after_shadow_maps
+//   feature.declare_after_opaque(graph, {.color = color, .depth = depth}); // at after_opaque; `color` becomes the
+//   fogged version executor.submit(..., feature.bindings());
+//
+// What a frame does not need is not declared, and `omissions` says why.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "features/volumetrics/frame_inputs.hpp"
+#include "rendergraph/device_table.hpp"
+#include "rendergraph/executor.hpp"
+#include "rendergraph/graph.hpp"
+
+namespace tyndall::volumetrics {
+
+/// The device must have VK_KHR_push_descriptor, dynamicRendering and synchronization2 enabled.
+struct FeatureInfo {
+    const rg::DeviceTable* vk = nullptr; ///< outlives the feature
+    VkDevice device = VK_NULL_HANDLE;
+    VkPipelineCache pipeline_cache = VK_NULL_HANDLE; ///< may be null
+    VkPhysicalDeviceMemoryProperties memory_properties = {};
+    std::uint32_t frames_in_flight = 2;
+};
+
+/// gpu::GpuLight each, FrameInputs::light_count of them, in render space; needed only when there are any.
+struct FrameBeginResources {
+    rg::Buffer lights;
+};
+
+/// Needed only when the sun casts shadows; otherwise invalid handles.
+struct ShadowResources {
+    rg::Image cascades;    ///< depth array, a layer a cascade (4 at most), square, 0 at the light, 1 where it is empty
+    rg::Buffer parameters; ///< gpu::SunCascades
+};
+
+struct OpaqueResources {
+    rg::Image& color; ///< linear scene radiance, FrameInputs::color_format; modified
+    rg::Image depth;  ///< device depth of the same size
+};
+
+/// Light clusters of the frame, for forward shading too: gpu::LightClusters and `uint masks[]`.
+struct ClusterResources {
+    rg::Buffer masks;
+    rg::Buffer parameters;
+};
+
+/// For shaders/common/scattering_volume.glsl.
+struct VolumeResources {
+    rg::Image accumulated;  ///< 2D array of slices + 1 layers: radiance toward the eye, optical depth
+    rg::Image in_scattered; ///< 3D: radiance per unit of scattering coefficient
+    rg::Buffer parameters;  ///< begins with gpu::ScatteringVolume
+};
+
+/// Intermediate images, for looking at; invalid where their pass was left out.
+struct StageResources {
+    rg::Image density; ///< 3D: scattering coefficient and extinction, 1/m times VolumetricParameters::density_scale.x
+    rg::Image esm;     ///< 2D array: ln of the mean of e^(k z), blurred
+};
+
+/// A thing that the frame does without.
+struct Omission {
+    std::string what;
+    std::string why;
+};
+
+class Feature {
+public:
+    [[nodiscard]] static tl::expected<Feature, Error> create(const FeatureInfo& info);
+    Feature(Feature&&) noexcept;
+    Feature& operator=(Feature&&) noexcept;
+    ~Feature(); ///< the host has waited for the frames in flight
+
+    /// Validates, makes the pipelines that the frame needs, writes its uniforms into `frame_slot`. After an error the
+    /// frame has no fog: the declare functions do nothing.
+    [[nodiscard]] tl::expected<void, Error> begin_frame(const FrameInputs& inputs);
+
+    /// Density injection and light clustering.
+    [[nodiscard]] tl::expected<void, Error> declare_frame_begin(rg::GraphBuilder& graph,
+                                                                const FrameBeginResources& resources);
+    /// ESM downsample, blur x, blur y, froxel lighting, accumulation.
+    [[nodiscard]] tl::expected<void, Error> declare_after_shadow_maps(rg::GraphBuilder& graph,
+                                                                      const ShadowResources& resources);
+    /// Fog on opaque.
+    void declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResources& resources);
+
+    [[nodiscard]] const std::optional<ClusterResources>& clusters() const; ///< after declare_frame_begin
+    [[nodiscard]] const std::optional<VolumeResources>& volume() const;    ///< after declare_after_shadow_maps
+    [[nodiscard]] const StageResources& stages() const;                    ///< after declare_after_shadow_maps
+
+    /// What the executor needs beside the host's own bindings.
+    [[nodiscard]] std::span<const rg::ImportBinding> bindings() const;
+    [[nodiscard]] std::span<const Omission> omissions() const;
+
+private:
+    struct State;
+    explicit Feature(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+} // namespace tyndall::volumetrics

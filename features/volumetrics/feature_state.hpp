@@ -1,0 +1,68 @@
+// What a Feature holds, shared by feature.cpp (life, frame set-up) and declare.cpp (passes).
+#pragma once
+
+#include "features/volumetrics/feature.hpp"
+#include "features/volumetrics/host_buffers.hpp"
+#include "features/volumetrics/parameters.hpp"
+#include "features/volumetrics/pipelines.hpp"
+
+namespace tyndall::volumetrics {
+
+/// One frame between begin_frame and declare_after_opaque.
+struct FrameState {
+    FrameInputs inputs;
+    gpu::VolumetricParameters parameters{};
+    gpu::LightClusters cluster_parameters{};
+    bool cold = true;
+    bool sun_shadow = false;
+    LocalLights lights = LocalLights::none;
+    Program density_injection;
+    Program light_clustering;
+    Program fog_on_opaque;
+
+    rg::Buffer parameter_buffer;
+    rg::Buffer light_buffer;
+    std::optional<ClusterResources> clusters;
+    std::optional<VolumeResources> volume;
+    StageResources stages;
+};
+
+struct Feature::State {
+    State(const FeatureInfo& info, std::unique_ptr<HostBuffers> buffers)
+        : vk(info.vk), device(info.device), pipelines(*info.vk, info.device, info.pipeline_cache),
+          host_buffers(std::move(buffers)) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State();
+
+    /// Creates the frame's pipelines that are known before anything is declared.
+    [[nodiscard]] tl::expected<void, Error> prepare_programs();
+    void omit(const char* what, const char* why) { omissions.push_back({what, why}); }
+
+    // Passes, in order; declare.cpp.
+    void declare_density(rg::GraphBuilder& graph);
+    void declare_clustering(rg::GraphBuilder& graph);
+    [[nodiscard]] tl::expected<void, Error> declare_esm(rg::GraphBuilder& graph, const ShadowResources& shadow);
+    [[nodiscard]] tl::expected<void, Error> declare_lighting(rg::GraphBuilder& graph, const ShadowResources& shadow);
+    [[nodiscard]] tl::expected<void, Error> declare_accumulation(rg::GraphBuilder& graph);
+    void declare_fog(rg::GraphBuilder& graph, const OpaqueResources& resources);
+    [[nodiscard]] rg::QueueWish wish() const;
+
+    const rg::DeviceTable* vk;
+    VkDevice device;
+    VkSampler linear = VK_NULL_HANDLE;  ///< clamps to the edge
+    VkSampler nearest = VK_NULL_HANDLE; ///< clamps to the edge
+    Pipelines pipelines;
+    std::unique_ptr<HostBuffers> host_buffers;
+
+    std::optional<FrameState> frame;   ///< empty where there is no fog
+    std::optional<FrameMemory> before; ///< the last frame that had fog
+    std::vector<rg::ImportBinding> import_bindings;
+    std::vector<Omission> omissions;
+};
+
+/// Long rows run best on processors that vectorise along x: a multiple of 8, at most 128 (the smallest limit that
+/// Vulkan allows), splitting `width` evenly.
+[[nodiscard]] GroupShape row_group(std::uint32_t width, std::uint32_t longest = 128);
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,253 @@
+#include "features/volumetrics/fog_json.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace tyndall::volumetrics {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Finds what the document's tree no longer shows: where the syntax breaks, and keys given twice.
+class SyntaxCheck final : public nlohmann::json_sax<Json> {
+public:
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override {
+        keys_.emplace_back();
+        return true;
+    }
+    bool key(string_t& name) override {
+        if (!keys_.back().insert(name).second) {
+            error_ = Error{"The fog file gives the key \"" + name + "\" twice in one object."};
+            return false;
+        }
+        return true;
+    }
+    bool end_object() override {
+        keys_.pop_back();
+        return true;
+    }
+    bool start_array(std::size_t) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception&) override {
+        error_ = Error{"The fog file is not valid JSON near byte " + std::to_string(position) + "."};
+        return false;
+    }
+    [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+private:
+    std::vector<std::set<std::string>> keys_;
+    std::optional<Error> error_;
+};
+
+/// Reads known keys of one object; what is left over at the end is unknown. Keeps the first complaint of all sections.
+class Section {
+public:
+    Section(const Json& object, std::string path, std::optional<Error>& error)
+        : object_(&object), path_(std::move(path)), error_(&error) {
+        if (!object.is_object()) {
+            complain(path_.empty() ? "The fog file" : path_, "must be an object");
+            object_ = nullptr;
+        }
+    }
+    Section(const Section&) = delete;
+    Section& operator=(const Section&) = delete;
+    ~Section() {
+        if (object_ == nullptr) {
+            return;
+        }
+        for (auto entry = object_->begin(); entry != object_->end(); ++entry) {
+            if (!known_.contains(entry.key())) {
+                *error_ =
+                    *error_ ? *error_ : std::optional(Error{path_of(entry.key()) + " is not a key of the fog file."});
+            }
+        }
+    }
+
+    [[nodiscard]] const Json* find(const char* key) {
+        known_.insert(key);
+        if (object_ == nullptr) {
+            return nullptr;
+        }
+        const auto found = object_->find(key);
+        return found == object_->end() ? nullptr : &*found;
+    }
+    void read(const char* key, float& value) {
+        if (const Json* json = find(key)) {
+            value = number(*json, path_of(key), value);
+        }
+    }
+    void read(const char* key, bool& value) {
+        if (const Json* json = find(key)) {
+            if (const auto* boolean = json->get_ptr<const Json::boolean_t*>()) {
+                value = *boolean;
+            } else {
+                complain(path_of(key), "must be true or false");
+            }
+        }
+    }
+    void read(const char* key, std::uint32_t& value) {
+        if (const Json* json = find(key)) {
+            const auto* whole = json->get_ptr<const Json::number_unsigned_t*>();
+            if (whole != nullptr && *whole <= std::numeric_limits<std::uint32_t>::max()) {
+                value = static_cast<std::uint32_t>(*whole);
+            } else {
+                complain(path_of(key), "must be a whole number that is not negative");
+            }
+        }
+    }
+    void read(const char* key, glm::vec3& value) {
+        if (const Json* json = find(key)) {
+            if (!json->is_array() || json->size() != 3) {
+                complain(path_of(key), "must be an array of 3 numbers");
+                return;
+            }
+            for (int i = 0; i < 3; ++i) {
+                const auto index = static_cast<std::size_t>(i);
+                value[i] = number((*json)[index], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
+            }
+        }
+    }
+    void read_per_cascade(const char* key, std::array<float, 4>& value) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        if (!json->is_array()) {
+            value.fill(number(*json, path_of(key), value[0]));
+        } else if (json->size() != value.size()) {
+            complain(path_of(key), "must be one number, or an array of 4 for the cascades");
+        } else {
+            for (std::size_t i = 0; i < value.size(); ++i) {
+                value[i] = number((*json)[i], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
+            }
+        }
+    }
+    void read(const char* key, StorageFormat& value) {
+        if (const Json* json = find(key)) {
+            const auto* name = json->get_ptr<const Json::string_t*>();
+            if (name != nullptr && (*name == "fp16" || *name == "fp32")) {
+                value = *name == "fp16" ? StorageFormat::fp16 : StorageFormat::fp32;
+            } else {
+                complain(path_of(key), "must be \"fp16\" or \"fp32\"");
+            }
+        }
+    }
+    [[nodiscard]] std::string path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+private:
+    float number(const Json& json, const std::string& path, float fallback) {
+        if (!json.is_number()) {
+            complain(path, "must be a number");
+            return fallback;
+        }
+        const double value = json.get<double>();
+        if (!std::isfinite(value) || std::abs(value) > static_cast<double>(std::numeric_limits<float>::max())) {
+            complain(path, "must be a finite number of single precision");
+            return fallback;
+        }
+        return static_cast<float>(value);
+    }
+    void complain(const std::string& path, const char* what) {
+        if (!*error_) {
+            *error_ = Error{path + " " + what + "."};
+        }
+    }
+
+    const Json* object_;
+    std::string path_;
+    std::optional<Error>* error_;
+    std::set<std::string> known_;
+};
+
+/// Runs `read` on the object at `key`, if there is one.
+template <typename Read>
+void subsection(Section& parent, const char* key, std::optional<Error>& error, Read read) {
+    if (const Json* json = parent.find(key)) {
+        Section section(*json, parent.path_of(key), error);
+        read(section);
+    }
+}
+
+void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
+    subsection(root, "medium", error, [&](Section& section) {
+        subsection(section, "homogeneous", error, [&](Section& s) {
+            s.read("extinction_per_m", medium.homogeneous.extinction_per_m);
+            s.read("albedo", medium.homogeneous.albedo);
+        });
+        subsection(section, "height", error, [&](Section& s) {
+            s.read("extinction_per_m", medium.height.extinction_per_m);
+            s.read("albedo", medium.height.albedo);
+            s.read("base_height_m", medium.height.base_height_m);
+            s.read("falloff_per_m", medium.height.falloff_per_m);
+        });
+        subsection(section, "noise", error, [&](Section& s) {
+            s.read("amplitude", medium.noise.amplitude);
+            s.read("scale_m", medium.noise.scale_m);
+            s.read("wind_m_s", medium.noise.wind_m_s);
+        });
+    });
+    subsection(root, "phase", error, [&](Section& s) { s.read("g", medium.phase_g); });
+    subsection(root, "ambient", error, [&](Section& s) { s.read("radiance", medium.ambient_radiance); });
+}
+
+void read_settings(Section& root, Settings& settings, std::optional<Error>& error) {
+    subsection(root, "grid", error, [&](Section& s) {
+        s.read("width", settings.grid.width);
+        s.read("height", settings.grid.height);
+        s.read("slices", settings.grid.slices);
+        s.read("range_m", settings.grid.range_m);
+        settings.grid.shape_m = 0.25F * settings.grid.range_m;
+        s.read("shape_m", settings.grid.shape_m);
+    });
+    subsection(root, "shadow", error,
+               [&](Section& s) { s.read_per_cascade("esm_exponent", settings.shadow.esm_exponent); });
+    subsection(root, "temporal", error, [&](Section& s) {
+        s.read("enabled", settings.temporal.enabled);
+        s.read("new_frame_weight", settings.temporal.new_frame_weight);
+        s.read("jitter", settings.temporal.jitter);
+    });
+    root.read("storage", settings.storage);
+}
+
+} // namespace
+
+tl::expected<Fog, Error> parse_fog_json(std::string_view text) {
+    SyntaxCheck syntax;
+    if (!Json::sax_parse(text.begin(), text.end(), &syntax)) {
+        return tl::unexpected(syntax.error().value_or(Error{"The fog file is not valid JSON."}));
+    }
+    const Json document = Json::parse(text.begin(), text.end(), nullptr, false);
+    Fog fog;
+    std::optional<Error> error;
+    {
+        Section root(document, "", error);
+        read_medium(root, fog.medium, error);
+        read_settings(root, fog.settings, error);
+    }
+    if (error) {
+        return tl::unexpected(*error);
+    }
+    if (auto valid = validate(fog.medium); !valid) {
+        return tl::unexpected(valid.error());
+    }
+    if (auto valid = validate(fog.settings); !valid) {
+        return tl::unexpected(valid.error());
+    }
+    return fog;
+}
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,42 @@
+// What a host tells the feature about one frame: plain values, no engine types.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "features/volumetrics/settings.hpp"
+
+#include <vulkan/vulkan_core.h>
+
+namespace tyndall::volumetrics {
+
+/// Matrices without jitter. Render space has world axes, metres and its origin at `origin_m`, which for a perspective
+/// view is the eye. View space looks along -Z, +Y up.
+struct Camera {
+    glm::dmat4 view_from_render{1.0}; ///< rigid, without translation
+    glm::dmat4 clip_from_view{1.0};   ///< the host's own clip space: any depth direction, Vulkan's framebuffer xy
+    glm::dvec3 origin_m{0.0};         ///< world position of render space's origin
+};
+
+struct Sun {
+    glm::vec3 direction{0.0F, -1.0F, 0.0F}; ///< unit, the direction in which it travels, world axes
+    glm::vec3 illuminance_lux{0.0F};
+    bool casts_shadows = false; ///< cascades will be given to declare_after_shadow_maps
+};
+
+struct FrameInputs {
+    Medium medium;
+    Settings settings;
+    Camera camera;
+    std::optional<Sun> sun;
+    std::uint32_t light_count = 0;                         ///< entries of the light buffer given to declare_frame_begin
+    double time_s = 0.0;                                   ///< moves the noise with its wind
+    bool cut = false;                                      ///< history and jitter start anew
+    std::uint32_t frame_slot = 0;                          ///< in [0, frames_in_flight): Executor::next_slot
+    VkFormat color_format = VK_FORMAT_R16G16B16A16_SFLOAT; ///< of the image given to declare_after_opaque
+};
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,107 @@
+#include "features/volumetrics/host_buffers.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+namespace tyndall::volumetrics {
+namespace {
+
+Error buffer_error(VkResult result) {
+    return {"The device refused the uniform buffers of the volumetrics (VkResult " +
+            std::to_string(static_cast<int>(result)) + ")."};
+}
+
+/// The first type among `type_bits` that the host sees without flushing; -1 if none.
+int host_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t type_bits) {
+    const VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+        if ((type_bits >> i & 1U) != 0 && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) {
+            return static_cast<int>(i);
+        }
+    }
+    return -1;
+}
+
+} // namespace
+
+VkResult HostBuffers::make_buffer(VkDeviceSize size_bytes, VkBuffer& buffer) {
+    const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                  .size = size_bytes,
+                                  .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                                  .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+    return vk_->CreateBuffer(device_, &info, nullptr, &buffer);
+}
+
+tl::expected<std::unique_ptr<HostBuffers>, Error> HostBuffers::create(const rg::DeviceTable& vk, VkDevice device,
+                                                                      const VkPhysicalDeviceMemoryProperties& memory,
+                                                                      std::uint32_t slots) {
+    std::unique_ptr<HostBuffers> self(new HostBuffers(vk, device));
+    self->slots_.resize(slots);
+    VkResult result = VK_SUCCESS;
+    VkDeviceSize alignment = 1;
+    VkDeviceSize largest = 0;
+    std::uint32_t type_bits = ~0U;
+    for (Slot& slot : self->slots_) {
+        for (const bool parameters : {true, false}) {
+            VkBuffer& buffer = parameters ? slot.parameters : slot.clusters;
+            result =
+                self->make_buffer(parameters ? sizeof(gpu::VolumetricParameters) : sizeof(gpu::LightClusters), buffer);
+            if (result != VK_SUCCESS) {
+                return tl::unexpected(buffer_error(result));
+            }
+            VkMemoryRequirements needs{};
+            vk.GetBufferMemoryRequirements(device, buffer, &needs);
+            alignment = std::max(alignment, needs.alignment);
+            largest = std::max(largest, needs.size);
+            type_bits &= needs.memoryTypeBits;
+        }
+    }
+    const int type = host_memory_type(memory, type_bits);
+    if (type < 0) {
+        return tl::unexpected(Error{"The device has no coherent host-visible memory for uniform buffers."});
+    }
+    self->stride_bytes_ = (largest + alignment - 1) / alignment * alignment;
+    const VkMemoryAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                        .allocationSize = self->stride_bytes_ * 2 * slots,
+                                        .memoryTypeIndex = static_cast<std::uint32_t>(type)};
+    result = vk.AllocateMemory(device, &allocate, nullptr, &self->memory_);
+    if (result != VK_SUCCESS) {
+        return tl::unexpected(buffer_error(result));
+    }
+    VkDeviceSize offset = 0;
+    for (const Slot& slot : self->slots_) {
+        for (VkBuffer buffer : {slot.parameters, slot.clusters}) {
+            result = vk.BindBufferMemory(device, buffer, self->memory_, offset);
+            if (result != VK_SUCCESS) {
+                return tl::unexpected(buffer_error(result));
+            }
+            offset += self->stride_bytes_;
+        }
+    }
+    void* mapped = nullptr;
+    result = vk.MapMemory(device, self->memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
+    if (result != VK_SUCCESS) {
+        return tl::unexpected(buffer_error(result));
+    }
+    self->mapped_ = static_cast<std::byte*>(mapped);
+    return self;
+}
+
+HostBuffers::~HostBuffers() {
+    for (const Slot& slot : slots_) {
+        vk_->DestroyBuffer(device_, slot.parameters, nullptr);
+        vk_->DestroyBuffer(device_, slot.clusters, nullptr);
+    }
+    vk_->FreeMemory(device_, memory_, nullptr);
+}
+
+void HostBuffers::write(std::uint32_t slot, const gpu::VolumetricParameters& parameters) {
+    std::memcpy(mapped_ + stride_bytes_ * (2 * slot), &parameters, sizeof parameters);
+}
+
+void HostBuffers::write(std::uint32_t slot, const gpu::LightClusters& clusters) {
+    std::memcpy(mapped_ + stride_bytes_ * (2 * slot + 1), &clusters, sizeof clusters);
+}
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,177 @@
+#include "features/volumetrics/parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <glm/matrix.hpp>
+
+namespace tyndall::volumetrics {
+namespace {
+
+gpu::DepthLaw depth_law(const GridSettings& grid) {
+    const double log_ratio = std::log1p(static_cast<double>(grid.range_m) / static_cast<double>(grid.shape_m));
+    return {glm::vec4(grid.range_m, grid.shape_m, log_ratio, 1.0 / log_ratio)};
+}
+
+/// phi1(-y) = (e^y - 1) / y.
+float phi1_of_minus(double y) {
+    return static_cast<float>(std::expm1(y) / y);
+}
+
+float fraction(double value) {
+    return static_cast<float>(value - std::floor(value));
+}
+
+/// clip.w = w_depth * z + w_constant for view depth z.
+struct ClipW {
+    double depth;
+    double constant;
+};
+ClipW clip_w(const glm::dmat4& p) {
+    return {-p[2][3], p[3][3]};
+}
+
+/// Solves device depth d = (p32 - p22 z) / w for z, with the sign that makes the numerator positive in mid-range.
+glm::vec4 depth_coefficients(const glm::dmat4& p) {
+    const ClipW w = clip_w(p);
+    glm::dvec4 c(p[3][2], w.constant, p[2][2], w.depth);
+    if (c.x - 0.5 * c.y < 0.0) {
+        c = -c;
+    }
+    return glm::vec4(c);
+}
+
+/// The camera in noise cells, modulo the noise's period of 256, in double: far from the world's origin and late in time
+/// the fractions must survive.
+glm::vec4 noise_origin(const FrameInputs& frame) {
+    const DensityNoise& noise = frame.medium.noise;
+    glm::vec4 origin(0.0F, 0.0F, 0.0F, noise.amplitude);
+    for (int i = 0; i < 3; ++i) {
+        const double drift_m = static_cast<double>(noise.wind_m_s[i]) * frame.time_s;
+        const double cells = (frame.camera.origin_m[i] - drift_m) / static_cast<double>(noise.scale_m);
+        origin[i] = static_cast<float>(cells - 256.0 * std::floor(cells / 256.0));
+    }
+    return origin;
+}
+
+glm::vec4 temporal(const FrameInputs& frame, const std::optional<FrameMemory>& before, float radiance_scale) {
+    const float weight = frame.settings.temporal.new_frame_weight;
+    glm::vec4 result(weight, std::ceil(1.0F / weight), 1.0F, 0.0F);
+    if (before) {
+        result.z = radiance_scale / before->volume.scale.x;
+        result.w = before->camera.view_from_render == frame.camera.view_from_render &&
+                           before->camera.origin_m == frame.camera.origin_m
+                       ? 1.0F
+                       : 0.0F;
+    }
+    return result;
+}
+
+/// Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences": powers of the reciprocal of 1.2207...
+glm::vec4 jitter(const FrameInputs& frame, std::uint32_t frames_since_cut) {
+    const double n = frames_since_cut;
+    return {fraction(0.5 + n * 0.8191725133961645), fraction(0.5 + n * 0.6710436067037893),
+            fraction(0.5 + n * 0.5497004779019703), frame.settings.temporal.jitter ? 1.0F : 0.0F};
+}
+
+} // namespace
+
+gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera, float radiance_scale) {
+    // clip.x = p00 x + p20 (-z) + p30 = ndc w  with  ndc = 2 uv - 1, solved for x at view depth z; y alike.
+    const glm::dmat4& p = camera.clip_from_view;
+    const ClipW w = clip_w(p);
+    gpu::ScatteringVolume volume{};
+    for (int i = 0; i < 2; ++i) {
+        const double inverse = 1.0 / p[i][i];
+        volume.slope[i] = static_cast<float>(2.0 * w.depth * inverse);
+        volume.slope[i + 2] = static_cast<float>((p[2][i] - w.depth) * inverse);
+        volume.origin[i] = static_cast<float>(2.0 * w.constant * inverse);
+        volume.origin[i + 2] = static_cast<float>((-p[3][i] - w.constant) * inverse);
+    }
+    volume.law = depth_law(grid);
+    const double log_ratio = std::log1p(static_cast<double>(grid.range_m) / static_cast<double>(grid.shape_m));
+    volume.grid = glm::vec4(grid.width, grid.height, grid.slices, phi1_of_minus(log_ratio / grid.slices));
+    volume.area = glm::vec4(1.0F, 1.0F, 0.0F, 0.0F);
+    const double length_ratio = std::exp(log_ratio / grid.slices);
+    volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, length_ratio, 1.0 / length_ratio);
+    return volume;
+}
+
+float radiance_scale_for(const FrameInputs& frame) {
+    if (frame.settings.storage == StorageFormat::fp32) {
+        return 1.0F;
+    }
+    const glm::vec3& ambient = frame.medium.ambient_radiance;
+    double brightest = std::max({ambient.x, ambient.y, ambient.z});
+    if (frame.sun) {
+        const glm::vec3& sun = frame.sun->illuminance_lux;
+        const double a = std::abs(frame.medium.phase_g);
+        const double peak = (1.0 + a) / (12.566370614359172 * (1.0 - a) * (1.0 - a));
+        brightest += peak * static_cast<double>(std::max({sun.x, sun.y, sun.z}));
+    }
+    const double largest = 32768.0; // half of fp16's, which leaves room for local lights
+    return brightest > largest ? std::exp2(-static_cast<float>(std::ceil(std::log2(brightest / largest)))) : 1.0F;
+}
+
+gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_count, const gpu::DepthLaw& law) {
+    const glm::uvec3 froxels(grid.width, grid.height, grid.slices);
+    const glm::uvec3 counts = (froxels + cluster_block - 1U) / cluster_block;
+    return {.grid = glm::uvec4(froxels, light_count),
+            .block = glm::uvec4(cluster_block, (light_count + 31U) / 32U),
+            .counts = glm::uvec4(counts, 0),
+            .law = law};
+}
+
+bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
+    if (!before || frame.cut || before->storage != frame.settings.storage) {
+        return true;
+    }
+    // The same bits in every member but the radiance scale, which rescales history exactly.
+    gpu::ScatteringVolume now = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
+    now.scale.x = before->volume.scale.x;
+    now.scale.y = before->volume.scale.y;
+    return std::memcmp(&now, &before->volume, sizeof now) != 0;
+}
+
+gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
+    const Medium& medium = frame.medium;
+    const float radiance_scale = radiance_scale_for(frame);
+    const float extinction = medium.homogeneous.extinction_per_m + medium.height.extinction_per_m;
+    const float density_scale = 0.5F / std::max(extinction, 1e-30F); // noise at most doubles the extinction
+    const glm::dmat3 render_from_view = glm::transpose(glm::dmat3(frame.camera.view_from_render));
+
+    gpu::VolumetricParameters u{};
+    u.volume = scattering_volume(frame.settings.grid, frame.camera, radiance_scale);
+    u.render_from_view = glm::mat4(glm::dmat4(render_from_view));
+    u.previous_view_from_view = glm::mat4(1.0F);
+    if (before) {
+        glm::dmat4 moved(render_from_view);
+        moved[3] = glm::dvec4(frame.camera.origin_m - before->camera.origin_m, 1.0);
+        u.previous_view_from_view = glm::mat4(before->camera.view_from_render * moved);
+    }
+    u.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m * density_scale);
+    u.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m * density_scale);
+    u.height_law = glm::vec4(static_cast<double>(medium.height.base_height_m) - frame.camera.origin_m.y,
+                             medium.height.falloff_per_m, 0.0, 0.0);
+    u.noise_origin = noise_origin(frame);
+    u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, 0.0F, 0.0F, 0.0F);
+    u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
+    u.phase = glm::vec4(medium.phase_g, 0.0F, 0.0F, 0.0F);
+    u.temporal = temporal(frame, before, radiance_scale);
+    const std::uint32_t frames_since_cut = before ? before->frames_since_cut + 1 : 0;
+    u.jitter = jitter(frame, frames_since_cut);
+    u.ambient = glm::vec4(medium.ambient_radiance, 0.0F);
+    if (frame.sun) {
+        u.sun_direction = glm::vec4(glm::normalize(frame.sun->direction), 0.0F);
+        u.sun_illuminance = glm::vec4(frame.sun->illuminance_lux, 0.0F);
+    }
+    for (int i = 0; i < 4; ++i) {
+        u.esm_exponents[i] = frame.settings.shadow.esm_exponent[static_cast<std::size_t>(i)];
+    }
+    u.depth = depth_coefficients(frame.camera.clip_from_view);
+    u.frame = glm::uvec4(frames_since_cut, frame.light_count, 0, 0);
+    return u;
+}
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,41 @@
+// From a frame's inputs to the uniform structs that the shaders read: pure functions.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "features/volumetrics/frame_inputs.hpp"
+#include "shaders/volumetrics/interop.h"
+
+namespace tyndall::volumetrics {
+
+/// Lights of up to this many froxels share a cluster's mask.
+inline constexpr glm::uvec3 cluster_block{8, 8, 2};
+
+/// What the next frame needs of this one.
+struct FrameMemory {
+    Camera camera;
+    gpu::ScatteringVolume volume;
+    StorageFormat storage = StorageFormat::fp16;
+    std::uint32_t frames_since_cut = 0;
+};
+
+/// The volume that the grid settings and a camera span. `radiance_scale` is what radiance is stored times.
+[[nodiscard]] gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera,
+                                                      float radiance_scale);
+/// A power of two, 1 unless the sun's forward peak would leave the range of fp16.
+[[nodiscard]] float radiance_scale_for(const FrameInputs& frame);
+
+[[nodiscard]] gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_count,
+                                                const gpu::DepthLaw& law);
+
+/// True when the frame must not use the one before: there is none, the host cut, or grid, range or field of view
+/// differ.
+[[nodiscard]] bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& before);
+
+/// Everything but the sizes of the shadow maps (`esm_size`), which only the declared graph knows. `before` is empty on
+/// a cold start.
+[[nodiscard]] gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame,
+                                                              const std::optional<FrameMemory>& before);
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,59 @@
+// Pipelines of the feature's passes, made when a frame first needs them and kept.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "features/volumetrics/error.hpp"
+#include "features/volumetrics/shaders.hpp"
+#include "rendergraph/device_table.hpp"
+
+namespace tyndall::volumetrics {
+
+/// What a pass binds to record itself.
+struct Program {
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+using GroupShape = std::array<std::uint32_t, 3>;
+
+class Pipelines {
+public:
+    Pipelines(const rg::DeviceTable& vk, VkDevice device, VkPipelineCache cache);
+    Pipelines(const Pipelines&) = delete;
+    Pipelines& operator=(const Pipelines&) = delete;
+    ~Pipelines(); ///< no frame that uses a program may be in flight
+
+    /// `constants` are the specialization constants from id 3 on; 0 to 2 are the group shape.
+    [[nodiscard]] tl::expected<Program, Error> compute(const ShaderCode& shader, const GroupShape& group,
+                                                       std::span<const std::uint32_t> constants = {});
+    /// A full-screen triangle whose fragments are blended into one colour target as source * 1 + target * source alpha.
+    [[nodiscard]] tl::expected<Program, Error> full_screen_blend(const ShaderCode& vertex, const ShaderCode& fragment,
+                                                                 VkFormat color_format);
+
+private:
+    struct Entry {
+        std::vector<std::uint32_t> key; ///< group shape and constants, or the colour format
+        const std::uint32_t* code = nullptr;
+        VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+        Program program;
+    };
+    [[nodiscard]] const Entry* find(const ShaderCode& shader, const std::vector<std::uint32_t>& key) const;
+    [[nodiscard]] tl::expected<void, Error> make_layout(const ShaderCode& shader, VkShaderStageFlags stages,
+                                                        Entry& entry);
+    [[nodiscard]] tl::expected<VkShaderModule, Error> make_module(const ShaderCode& shader);
+    void destroy(Entry& entry);
+
+    const rg::DeviceTable* vk_;
+    VkDevice device_;
+    VkPipelineCache cache_;
+    std::vector<Entry> entries_;
+};
+
+} // namespace tyndall::volumetrics

@@ -1,0 +1,146 @@
+#include "features/volumetrics/shaders.hpp"
+
+#include <array>
+
+#include "spirv/accumulation_fp16.h"
+#include "spirv/accumulation_fp32.h"
+#include "spirv/density_injection_fp16.h"
+#include "spirv/density_injection_fp32.h"
+#include "spirv/esm_blur.h"
+#include "spirv/esm_downsample.h"
+#include "spirv/fog_on_opaque.h"
+#include "spirv/froxel_lighting_fp16_s0_l0_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l0_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l1_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l1_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l2_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l2_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l0_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l0_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l1_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l1_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l2_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l2_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l0_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l0_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l1_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l1_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l2_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l2_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l0_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l0_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l1_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l1_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l2_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l2_h1.h"
+#include "spirv/full_screen.h"
+#include "spirv/light_clustering.h"
+
+namespace tyndall::volumetrics {
+namespace {
+
+constexpr VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+constexpr VkDescriptorType sampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+constexpr VkDescriptorType storage_image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+constexpr VkDescriptorType storage_buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+
+constexpr ShaderBinding density_bindings[] = {{0, uniform}, {1, storage_image}};
+constexpr ShaderBinding clustering_bindings[] = {{0, uniform}, {1, uniform}, {2, storage_buffer}, {3, storage_buffer}};
+constexpr ShaderBinding downsample_bindings[] = {{0, uniform}, {1, sampled}, {2, storage_image}};
+constexpr ShaderBinding blur_bindings[] = {{0, storage_image}, {1, storage_image}};
+constexpr ShaderBinding accumulation_bindings[] = {
+    {0, uniform}, {1, storage_image}, {2, storage_image}, {3, storage_image}};
+constexpr ShaderBinding fog_bindings[] = {{0, uniform}, {1, sampled}, {2, sampled}};
+
+// Numbered as in froxel_lighting.comp; which of them a variant has follows from its index below.
+constexpr ShaderBinding lighting_bindings[] = {{0, uniform},        {1, storage_image},  {2, sampled},
+                                               {3, uniform},        {4, storage_buffer}, {5, uniform},
+                                               {6, storage_buffer}, {7, sampled}};
+
+constexpr bool has_binding(std::uint32_t binding, bool sun_shadow, std::uint32_t lights, bool history) {
+    switch (binding) {
+    case 2:
+    case 3: return sun_shadow;
+    case 4: return lights >= 1;
+    case 5:
+    case 6: return lights == 2;
+    case 7: return history;
+    default: return true;
+    }
+}
+
+struct LightingBindings {
+    std::array<ShaderBinding, 8> list{};
+    std::size_t count = 0;
+};
+
+/// By variant without the storage format: (sun_shadow * 3 + lights) * 2 + history.
+constexpr std::array<LightingBindings, 12> lighting_binding_lists = [] {
+    std::array<LightingBindings, 12> lists{};
+    for (std::uint32_t i = 0; i < lists.size(); ++i) {
+        for (const ShaderBinding& binding : lighting_bindings) {
+            if (has_binding(binding.binding, i / 6 == 1, (i / 2) % 3, i % 2 == 1)) {
+                lists[i].list[lists[i].count++] = binding;
+            }
+        }
+    }
+    return lists;
+}();
+
+/// By variant, storage format first.
+const std::span<const std::uint32_t> lighting_code[] = {
+    froxel_lighting_fp16_s0_l0_h0, froxel_lighting_fp16_s0_l0_h1, froxel_lighting_fp16_s0_l1_h0,
+    froxel_lighting_fp16_s0_l1_h1, froxel_lighting_fp16_s0_l2_h0, froxel_lighting_fp16_s0_l2_h1,
+    froxel_lighting_fp16_s1_l0_h0, froxel_lighting_fp16_s1_l0_h1, froxel_lighting_fp16_s1_l1_h0,
+    froxel_lighting_fp16_s1_l1_h1, froxel_lighting_fp16_s1_l2_h0, froxel_lighting_fp16_s1_l2_h1,
+    froxel_lighting_fp32_s0_l0_h0, froxel_lighting_fp32_s0_l0_h1, froxel_lighting_fp32_s0_l1_h0,
+    froxel_lighting_fp32_s0_l1_h1, froxel_lighting_fp32_s0_l2_h0, froxel_lighting_fp32_s0_l2_h1,
+    froxel_lighting_fp32_s1_l0_h0, froxel_lighting_fp32_s1_l0_h1, froxel_lighting_fp32_s1_l1_h0,
+    froxel_lighting_fp32_s1_l1_h1, froxel_lighting_fp32_s1_l2_h0, froxel_lighting_fp32_s1_l2_h1,
+};
+
+} // namespace
+
+ShaderCode density_injection_shader(StorageFormat storage) {
+    const bool fp16 = storage == StorageFormat::fp16;
+    return {"density injection", fp16 ? std::span<const std::uint32_t>(density_injection_fp16) : density_injection_fp32,
+            density_bindings};
+}
+
+ShaderCode light_clustering_shader() {
+    return {"light clustering", light_clustering, clustering_bindings};
+}
+
+ShaderCode esm_downsample_shader() {
+    return {"ESM downsample", esm_downsample, downsample_bindings};
+}
+
+ShaderCode esm_blur_shader() {
+    return {"ESM blur", esm_blur, blur_bindings};
+}
+
+ShaderCode froxel_lighting_shader(const LightingVariant& variant) {
+    const std::size_t index =
+        (static_cast<std::size_t>(variant.sun_shadow) * 3 + static_cast<std::size_t>(variant.lights)) * 2 +
+        static_cast<std::size_t>(variant.history);
+    const LightingBindings& bindings = lighting_binding_lists[index];
+    const std::size_t format = variant.storage == StorageFormat::fp16 ? 0 : lighting_binding_lists.size();
+    return {"froxel lighting", lighting_code[format + index], std::span(bindings.list).first(bindings.count),
+            variant.history ? 4U : 0U};
+}
+
+ShaderCode accumulation_shader(StorageFormat storage) {
+    const bool fp16 = storage == StorageFormat::fp16;
+    return {"accumulation", fp16 ? std::span<const std::uint32_t>(accumulation_fp16) : accumulation_fp32,
+            accumulation_bindings};
+}
+
+ShaderCode full_screen_shader() {
+    return {"full screen", full_screen, {}};
+}
+
+ShaderCode fog_on_opaque_shader() {
+    return {"fog on opaque", fog_on_opaque, fog_bindings};
+}
+
+} // namespace tyndall::volumetrics

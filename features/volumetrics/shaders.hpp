@@ -1,0 +1,45 @@
+// The compiled shaders of the feature and what each binds.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <vulkan/vulkan_core.h>
+
+#include "features/volumetrics/settings.hpp"
+
+namespace tyndall::volumetrics {
+
+struct ShaderBinding {
+    std::uint32_t binding;
+    VkDescriptorType type;
+};
+
+struct ShaderCode {
+    const char* name;
+    std::span<const std::uint32_t> spirv;
+    std::span<const ShaderBinding> bindings; ///< of set 0, push descriptors
+    std::uint32_t push_constant_bytes = 0;
+};
+
+enum class LocalLights : std::uint8_t { none, all, clustered };
+
+/// What froxel lighting is specialised to.
+struct LightingVariant {
+    StorageFormat storage = StorageFormat::fp16;
+    bool sun_shadow = false;
+    LocalLights lights = LocalLights::none;
+    bool history = false;
+};
+
+[[nodiscard]] ShaderCode density_injection_shader(StorageFormat storage);
+[[nodiscard]] ShaderCode light_clustering_shader();
+[[nodiscard]] ShaderCode esm_downsample_shader();
+[[nodiscard]] ShaderCode esm_blur_shader();
+/// Bindings that a variant lacks are left out of the list.
+[[nodiscard]] ShaderCode froxel_lighting_shader(const LightingVariant& variant);
+[[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage);
+[[nodiscard]] ShaderCode full_screen_shader();
+[[nodiscard]] ShaderCode fog_on_opaque_shader();
+
+} // namespace tyndall::volumetrics

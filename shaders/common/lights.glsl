@@ -1,0 +1,43 @@
+// Punctual lights and the Henyey-Greenstein phase function.
+#ifndef TYNDALL_SHADERS_COMMON_LIGHTS_GLSL
+#define TYNDALL_SHADERS_COMMON_LIGHTS_GLSL
+
+#include "lights.h"
+
+// No light is smaller than this, so that nothing is divided by zero beside it (m).
+const float smallest_light_radius_m = 0.005;
+
+// The fade to exactly 0 at the range, as KHR_lights_punctual recommends: 1 - (d / range)^4.
+float light_window(GpuLight light, float distance_squared) {
+    float x = distance_squared / (light.position_range.w * light.position_range.w);
+    return clamp(1.0 - x * x, 0.0, 1.0);
+}
+
+// KHR_lights_punctual's spot attenuation; exactly 0 outside the outer cone, 1 for point lights.
+float light_cone(GpuLight light, vec3 to_light) {
+    float a = clamp(dot(-to_light, light.direction_radius.xyz) * light.cone.x + light.cone.y, 0.0, 1.0);
+    return light.intensity_type.w > 0.5 ? a * a : 1.0;
+}
+
+// Irradiance (lux, rgb) at `position` on a surface that faces the light: candela / d^2, windowed, within the cone.
+// Exactly 0 beyond the range. Inside the source the distance is held at its radius. `to_light` is of unit length.
+vec3 light_irradiance_normal(GpuLight light, vec3 position, out vec3 to_light) {
+    vec3 d = light.position_range.xyz - position;
+    float distance_squared = dot(d, d);
+    to_light = d * inversesqrt(max(distance_squared, 1e-20));
+    float radius = max(light.direction_radius.w, smallest_light_radius_m);
+    float fade = light_window(light, distance_squared) * light_cone(light, to_light);
+    return light.intensity_type.rgb * (fade / max(distance_squared, radius * radius));
+}
+
+// Henyey and Greenstein 1941, per steradian. `travel` is the unit direction in which the light travels, `to_eye` from the
+// sample to the eye: g > 0 brightens when they agree. The denominator is (1 - |g|)^2 + 4 |g| sin^2(theta / 2), with the
+// sine from the chord between the two unit vectors: 1 + g^2 - 2 g cos(theta) cancels in fp32 as |g| nears 1.
+float henyey_greenstein(float g, vec3 travel, vec3 to_eye) {
+    vec3 chord = g >= 0.0 ? travel - to_eye : travel + to_eye;
+    float a = abs(g);
+    float denominator = (1.0 - a) * (1.0 - a) + a * dot(chord, chord);
+    return (1.0 - a) * (1.0 + a) / (12.566370614 * denominator * sqrt(denominator));
+}
+
+#endif

@@ -1,0 +1,83 @@
+// Look-ups in the scattering volume: the one place where fog on opaque surfaces, on transparents and on particles, and
+// the light that particles receive, are read.
+//
+// Bindings that the caller makes: a uniform buffer that begins with a ScatteringVolume, `accumulated` (2D array, N + 1
+// layers, rgb radiance, a optical depth) and `in_scattered` (3D, N slices), both with a linear sampler that clamps.
+#ifndef TYNDALL_SHADERS_COMMON_SCATTERING_VOLUME_GLSL
+#define TYNDALL_SHADERS_COMMON_SCATTERING_VOLUME_GLSL
+
+#include "depth_law.glsl"
+#include "scattering_volume.h"
+
+// View-space xy of uv's column at depth z (m).
+vec2 column_xy(ScatteringVolume volume, vec2 uv, float depth_m) {
+    return (uv * volume.slope.xy + volume.slope.zw) * depth_m + uv * volume.origin.xy + volume.origin.zw;
+}
+
+// uv of a view-space point at depth z > 0: the inverse of column_xy.
+vec2 column_uv(ScatteringVolume volume, vec2 xy, float depth_m) {
+    return (xy - volume.slope.zw * depth_m - volume.origin.zw) / (volume.slope.xy * depth_m + volume.origin.xy);
+}
+
+// Metres of ray per metre of view depth in uv's column.
+float column_stretch(ScatteringVolume volume, vec2 uv) {
+    vec2 slope = uv * volume.slope.xy + volume.slope.zw;
+    return sqrt(1.0 + dot(slope, slope));
+}
+
+// uv of column (x, y), which may be fractional.
+vec2 uv_of_column(ScatteringVolume volume, vec2 column) { return column / (volume.grid.xy - 1.0); }
+
+// Where uv lies in the textures.
+vec2 texture_uv(ScatteringVolume volume, vec2 uv) {
+    return (uv * (volume.grid.xy - 1.0) + 0.5) / volume.grid.xy * volume.area.xy;
+}
+
+// How density changes over a slice of optical depth x, from that of a neighbour of optical depth x_neighbour at
+// `direction` 1 (behind) or -1 (in front): half the relative change, positive where density falls away from the eye,
+// limited so that optical depth stays monotone.
+float density_tilt(ScatteringVolume volume, float x, float x_neighbour, float direction) {
+    float length_ratio = direction > 0.0 ? volume.scale.z : volume.scale.w; // of the neighbour to the slice
+    float slope = direction * (x_neighbour / length_ratio - x) * 2.0 / (1.0 + length_ratio);
+    return x > 0.0 ? clamp(-0.5 * slope / x, -0.9, 0.9) : 0.0;
+}
+
+// Radiance scattered toward the eye in front of a point, and the transmittance from it to the eye. `depth_m` is the
+// point's view depth; beyond the range the values at the range are returned, in front of the eye none of the fog.
+//
+// Between boundary k and k + 1, at fraction f of the slice with x = tau_{k+1} - tau_k:
+//   tau = tau_k + g x,  L = L_k + (L_{k+1} - L_k) g phi1(g x) / phi1(x),
+// exact for a source that is constant over the slice. g is the fraction of the slice's optical depth that lies in front
+// of the point: f where the slice is homogeneous, f + tilt f (1 - f) where density changes linearly over it, as the next
+// slice toward the eye shows. The sampler filters in xy only.
+void scattering_lookup(ScatteringVolume volume, sampler2DArray accumulated, vec2 uv, float depth_m, out vec3 radiance,
+                       out vec3 transmittance) {
+    float slices = volume.grid.z;
+    float position = min(t_from_depth(volume.law, depth_m), 1.0) * slices;
+    float k = min(floor(position), slices - 1.0);
+    float u = position - k;
+    float f = u * phi1(-u * volume.law.range_shape.z / slices) / volume.grid.w; // (z - z_k) / (z_{k+1} - z_k)
+
+    vec2 p = texture_uv(volume, uv);
+    float direction = k > 0.0 ? -1.0 : 1.0;
+    float outer = k > 0.0 ? k - 1.0 : min(2.0, slices);
+    vec4 near = textureLod(accumulated, vec3(p, k), 0.0);
+    vec4 far = textureLod(accumulated, vec3(p, k + 1.0), 0.0);
+    float tau_outer = textureLod(accumulated, vec3(p, outer), 0.0).a;
+
+    float x = max(far.a - near.a, 0.0);
+    float x_neighbour = max(k > 0.0 ? near.a - tau_outer : tau_outer - far.a, 0.0);
+    float g = f + density_tilt(volume, x, x_neighbour, direction) * f * (1.0 - f);
+    radiance = (near.rgb + (far.rgb - near.rgb) * (g * phi1(g * x) / phi1(x))) * volume.scale.y;
+    transmittance = vec3(exp(-(near.a + g * x)));
+}
+
+// Light that a particle at a point sends to the eye per unit of albedo: radiance in-scattered there per unit of
+// scattering coefficient, summed over sun, lights and ambient as phase function times what arrives. For a particle of
+// albedo a, C = a * in_scattered. Points outside the volume get the nearest value in it.
+vec3 in_scattered_lookup(ScatteringVolume volume, sampler3D in_scattered, vec2 uv, float depth_m) {
+    vec3 p = vec3(texture_uv(volume, uv), t_from_depth(volume.law, depth_m));
+    return textureLod(in_scattered, p, 0.0).rgb * volume.scale.y;
+}
+
+#endif

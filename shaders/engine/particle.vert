@@ -1,0 +1,69 @@
+// A particle as a billboard parallel to the image, lit and fogged at its own depth. Vertices are pulled: number v belongs
+// to the particle in sorted place v / 6.
+//
+// SCATTERING 1: light and fog from a scattering volume. 0: no fog, light from the sun (SUN_SHADOW 1: through its
+// cascades), the local lights (LIGHTS 1) and the ambient, scattered alike in all directions.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "engine/particle_interop.h"
+
+layout(set = 0, binding = 0, std430) readonly restrict buffer Frame { ParticleFrame frame; };
+layout(set = 0, binding = 1, std430) readonly restrict buffer Particles { GpuParticle particles[]; };
+layout(set = 0, binding = 2, std430) readonly restrict buffer Keys { uvec2 keys[]; };
+
+#if SCATTERING
+#include "common/scattering_volume.glsl"
+layout(set = 0, binding = 4) uniform Volume { ScatteringVolume volume; };
+layout(set = 0, binding = 5) uniform sampler2DArray accumulated;
+layout(set = 0, binding = 6) uniform sampler3D in_scattered;
+#else
+#include "engine/particle_light.glsl"
+#endif
+
+layout(location = 0) out vec2 place;                // in [-1, 1]^2 of the billboard
+layout(location = 1) flat out vec2 noise_offset;
+layout(location = 2) flat out float noise_share;
+layout(location = 3) flat out vec2 depth_and_scale; // view depth, m; reciprocal of the depth over which it fades, 1/m
+layout(location = 4) flat out float alpha;
+layout(location = 5) out vec3 radiance;             // of the particle and of the fog before it, where it is opaque
+
+// Smaller billboards than this (px) would fall between pixel centres and flicker: they are drawn this large and thinner.
+const float smallest_radius_px = 0.75;
+
+vec2 uv_of(vec4 clip) { return clamp(0.5 * clip.xy / clip.w + 0.5, 0.0, 1.0); }
+
+void main() {
+    const vec2 corners[6] = vec2[](vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(-1, 1), vec2(1, -1), vec2(1, 1));
+    GpuParticle particle = particles[keys[gl_VertexIndex / 6].y];
+    place = corners[gl_VertexIndex % 6];
+    vec3 centre = (frame.view_from_render * vec4(particle.position_radius.xyz, 1.0)).xyz;
+    float depth_m = -centre.z;
+    float w = frame.clip_from_view[2][3] * centre.z + frame.clip_from_view[3][3];
+    float true_radius = particle.position_radius.w;
+    float radius_px = true_radius * abs(frame.clip_from_view[1][1]) * 0.5 * frame.near_size.z / w;
+    float enlarged = max(smallest_radius_px / radius_px, 1.0);
+    float radius = true_radius * enlarged;
+
+    float s = sin(particle.look.x);
+    float c = cos(particle.look.x);
+    vec2 turned = vec2(c * place.x - s * place.y, s * place.x + c * place.y) * radius;
+    gl_Position = frame.clip_from_view * vec4(centre + vec3(turned, 0.0), 1.0);
+
+    noise_offset = particle.look.yz;
+    noise_share = enlarged > 1.0 ? 0.0 : particle.look.w;
+    depth_and_scale = vec2(depth_m, 1.0 / true_radius);
+    alpha = particle.albedo_alpha.w / (enlarged * enlarged);
+
+#if SCATTERING
+    // The corner itself is transparent: light half way to it stands for its quarter of the billboard.
+    vec2 light_uv = uv_of(frame.clip_from_view * vec4(centre + vec3(0.5 * turned, 0.0), 1.0));
+    vec3 light = in_scattered_lookup(volume, in_scattered, light_uv, depth_m);
+    vec3 fog;
+    vec3 transmittance;
+    scattering_lookup(volume, accumulated, uv_of(gl_Position), depth_m, fog, transmittance);
+    radiance = particle.albedo_alpha.rgb * light * transmittance + fog;
+#else
+    radiance = particle.albedo_alpha.rgb * particle_light(particle.position_radius.xyz, depth_m);
+#endif
+}

@@ -1,0 +1,66 @@
+// Media -> scattering coefficient (rgb) and extinction (a) of each froxel, times density_scale so that fp16 holds thin
+// and dense media alike. One pass, specialised to the media that are there.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "volumetrics/froxel.glsl"
+#include "volumetrics/interop.h"
+#include "volumetrics/noise.glsl"
+#include "volumetrics/storage.glsl"
+
+layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
+layout(constant_id = 3) const bool has_homogeneous = true;
+layout(constant_id = 4) const bool has_height = true;
+layout(constant_id = 5) const bool has_noise = true;
+
+layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
+layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D density;
+
+// Mean over the slice of e^(-falloff max(0, y - base)) along a ray between heights a and b above the base: exact, so
+// that the optical depth at slice boundaries is too. One part of the ray may lie below the base.
+float mean_height_density(float a, float b, float falloff) {
+    float low = min(a, b);
+    float high = max(a, b);
+    float low_above = max(low, 0.0);
+    float above = max(high - low_above, 0.0);
+    float fraction_above = high > low ? clamp(above / (high - low), 0.0, 1.0) : (low > 0.0 ? 1.0 : 0.0);
+    float mean_above = exp(-falloff * low_above) * phi1(falloff * above);
+    return mix(1.0, mean_above, fraction_above);
+}
+
+// The noise is faded where a froxel is too large to show it.
+float noise_factor(vec3 render_position, float froxel_m) {
+    float cells = froxel_m * u.noise_cells.x;
+    float amplitude = u.noise_origin.w * clamp(2.0 - 2.0 * cells, 0.0, 1.0);
+    vec3 p = render_position * u.noise_cells.x + u.noise_origin.xyz;
+    return amplitude > 0.0 ? 1.0 + amplitude * gradient_noise(p) : 1.0;
+}
+
+void main() {
+    ivec3 froxel = ivec3(gl_GlobalInvocationID);
+    vec3 grid = u.volume.grid.xyz;
+    if (any(greaterThanEqual(froxel, ivec3(grid)))) {
+        return;
+    }
+    vec2 uv = uv_of_column(u.volume, vec2(froxel.xy));
+    float near_m = boundary_depth(u.volume, float(froxel.z));
+    float far_m = boundary_depth(u.volume, float(froxel.z) + 1.0);
+
+    vec4 medium = vec4(0.0);
+    if (has_homogeneous) {
+        medium += vec4(u.homogeneous.rgb, 1.0) * u.homogeneous.w;
+    }
+    if (has_height) {
+        float height_near = (u.render_from_view * vec4(view_position(u.volume, uv, near_m), 1.0)).y - u.height_law.x;
+        float height_far = (u.render_from_view * vec4(view_position(u.volume, uv, far_m), 1.0)).y - u.height_law.x;
+        medium += vec4(u.height.rgb, 1.0) * (u.height.w * mean_height_density(height_near, height_far, u.height_law.y));
+    }
+    if (has_noise) {
+        float middle_m = 0.5 * (near_m + far_m);
+        vec3 position = (u.render_from_view * vec4(view_position(u.volume, uv, middle_m), 1.0)).xyz;
+        vec2 cell = (u.volume.slope.xy * middle_m + u.volume.origin.xy) / (grid.xy - 1.0);
+        float froxel_m = max(max(abs(cell.x), abs(cell.y)), (far_m - near_m) * column_stretch(u.volume, uv));
+        medium *= noise_factor(position, froxel_m);
+    }
+    imageStore(density, froxel, storable(medium));
+}

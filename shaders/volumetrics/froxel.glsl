@@ -1,0 +1,19 @@
+// Froxels as points and rays of view space.
+#ifndef TYNDALL_SHADERS_VOLUMETRICS_FROXEL_GLSL
+#define TYNDALL_SHADERS_VOLUMETRICS_FROXEL_GLSL
+
+#include "common/scattering_volume.glsl"
+
+// View depth of boundary k of N slices, k in [0, N].
+float boundary_depth(ScatteringVolume volume, float k) { return depth_from_t(volume.law, k / volume.grid.z); }
+
+vec3 view_position(ScatteringVolume volume, vec2 uv, float depth_m) {
+    return vec3(column_xy(volume, uv, depth_m), -depth_m);
+}
+
+// Unit direction of uv's ray, away from the eye.
+vec3 view_direction(ScatteringVolume volume, vec2 uv) {
+    return normalize(vec3(uv * volume.slope.xy + volume.slope.zw, -1.0));
+}
+
+#endif

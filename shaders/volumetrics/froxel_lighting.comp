@@ -1,0 +1,136 @@
+// ESM, light clusters, ambient, history -> in-scattered radiance per unit of scattering coefficient (rgb) and the number
+// of frames in its mean (a).
+//
+// The sample lies at a jittered place in its froxel, so that the mean over frames averages visibility along the slice
+// and across it. Reprojection blends with the frame before: a running mean, 1/n, until the steady weight.
+//
+// SUN_SHADOW 1: sun through the ESM. LIGHTS 0: none, 1: all, 2: by clusters. HISTORY 1: temporal reprojection.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "common/lights.glsl"
+#include "volumetrics/froxel.glsl"
+#include "volumetrics/interop.h"
+#include "volumetrics/random.glsl"
+#include "volumetrics/storage.glsl"
+
+layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
+layout(constant_id = 3) const bool has_sun = true;
+
+layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
+layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
+
+#if SUN_SHADOW
+#include "volumetrics/esm.glsl"
+layout(set = 0, binding = 2) uniform sampler2DArray esm; // nearest, clamps
+layout(set = 0, binding = 3) uniform Sun { SunCascades cascades; };
+#endif
+#if LIGHTS
+#include "common/light_clusters.glsl"
+#include "volumetrics/local_lights.glsl"
+layout(set = 0, binding = 4, std430) readonly restrict buffer Lights { GpuLight lights[]; };
+#endif
+#if LIGHTS == 2
+layout(set = 0, binding = 5) uniform ClusterParameters { LightClusters clusters; };
+layout(set = 0, binding = 6, std430) readonly restrict buffer Masks { uint masks[]; };
+#endif
+#if HISTORY
+layout(set = 0, binding = 7) uniform sampler3D history; // linear, clamps
+layout(push_constant) uniform Push { uint history_valid; };
+#endif
+
+vec3 sun_scattering(vec3 position, float depth_m, vec3 to_eye) {
+    float visibility = 1.0;
+#if SUN_SHADOW
+    visibility = sun_visibility(cascades, esm, u.esm_exponents, u.esm_size.xy, position, depth_m);
+#endif
+    return u.sun_illuminance.rgb * (visibility * henyey_greenstein(u.phase.x, u.sun_direction.xyz, to_eye));
+}
+
+#if LIGHTS
+vec3 local_scattering(uvec3 froxel, RaySegment segment) {
+    vec3 sum = vec3(0.0);
+#if LIGHTS == 2
+    uint first = cluster_index_of_froxel(clusters, froxel) * clusters.block.w;
+    for (uint word = 0u; word < clusters.block.w; ++word) {
+        for (uint mask = masks[first + word]; mask != 0u; mask &= mask - 1u) {
+            sum += scattered_from_light(lights[32u * word + uint(findLSB(mask))], segment, u.phase.x);
+        }
+    }
+#else
+    for (uint i = 0u; i < u.frame.y; ++i) {
+        sum += scattered_from_light(lights[i], segment, u.phase.x);
+    }
+#endif
+    return sum;
+}
+#endif
+
+#if HISTORY
+// The frame before at this froxel's centre: rgb in this frame's scale, a: its age, 0 where there is none.
+vec4 fetch_history(ivec3 froxel) {
+    vec4 old;
+    if (u.temporal.w > 0.5) {
+        old = texelFetch(history, froxel, 0);
+    } else {
+        float middle_m = boundary_depth(u.volume, float(froxel.z) + 0.5);
+        vec3 now = view_position(u.volume, uv_of_column(u.volume, vec2(froxel.xy)), middle_m);
+        vec3 before = (u.previous_view_from_view * vec4(now, 1.0)).xyz;
+        vec2 uv = column_uv(u.volume, before.xy, -before.z);
+        float t = t_from_depth(u.volume.law, -before.z);
+        bool inside = before.z < 0.0 && all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0))) &&
+                      t <= 1.0;
+        if (!inside) {
+            return vec4(0.0);
+        }
+        old = textureLod(history, vec3(texture_uv(u.volume, uv), t), 0.0);
+    }
+    old.rgb *= u.temporal.z;
+    return is_finite(old) ? old : vec4(0.0);
+}
+#endif
+
+void main() {
+    uvec3 froxel = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(froxel, uvec3(u.volume.grid.xyz)))) {
+        return;
+    }
+    // A low-discrepancy sequence over frames (Roberts' R3), shifted by a random offset per froxel.
+    uvec3 bits = hash3(froxel);
+    vec3 place = u.jitter.w > 0.5 ? fract(unit_floats(bits) + u.jitter.xyz) : vec3(0.5);
+    vec2 uv = uv_of_column(u.volume, vec2(froxel.xy) + place.xy - 0.5);
+    float near_m = boundary_depth(u.volume, float(froxel.z));
+    float far_m = boundary_depth(u.volume, float(froxel.z) + 1.0);
+    float depth_m = mix(near_m, far_m, place.z);
+
+    mat3 rotation = mat3(u.render_from_view);
+    vec3 position = rotation * view_position(u.volume, uv, depth_m);
+    vec3 to_eye = -(rotation * view_direction(u.volume, uv));
+
+    vec3 sum = u.ambient.rgb;
+    if (has_sun) {
+        sum += sun_scattering(position, depth_m, to_eye);
+    }
+#if LIGHTS
+    float stretch = column_stretch(u.volume, uv);
+    sum += local_scattering(froxel, RaySegment(position, to_eye, (depth_m - near_m) * stretch,
+                                               (far_m - depth_m) * stretch));
+#endif
+    vec4 result = vec4(sum * u.volume.scale.x, 1.0);
+    result = is_finite(result) ? result : vec4(0.0, 0.0, 0.0, 1.0);
+
+#if HISTORY
+    vec4 old = vec4(0.0);
+    if (history_valid != 0u) {
+        old = fetch_history(ivec3(froxel));
+    }
+    if (old.a > 0.0) {
+        float age = min(old.a, u.temporal.y) + 1.0;
+        result.rgb = mix(old.rgb, result.rgb, max(1.0 / age, u.temporal.x));
+        result.a = age;
+    }
+    imageStore(in_scattered, ivec3(froxel), storable_unbiased(result, hash3(uvec3(froxel.xy, froxel.z + 4096u * u.frame.x)).x));
+#else
+    imageStore(in_scattered, ivec3(froxel), storable(result));
+#endif
+}

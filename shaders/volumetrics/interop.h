@@ -1,0 +1,36 @@
+// What every volumetric pass reads of the frame: one uniform buffer, the same struct in GLSL and C++.
+#ifndef TYNDALL_SHADERS_VOLUMETRICS_INTEROP_H
+#define TYNDALL_SHADERS_VOLUMETRICS_INTEROP_H
+
+#include "../common/interop.h"
+#include "../common/light_clusters.h"
+#include "../common/scattering_volume.h"
+
+TYNDALL_INTEROP_BEGIN
+
+struct VolumetricParameters {
+    ScatteringVolume volume; // first, so that those who only look up bind the same buffer
+    mat4 render_from_view;
+    mat4 previous_view_from_view; // where a point of this frame's view space was in the frame before's
+    vec4 homogeneous;     // rgb albedo; w: extinction, 1/m, times density_scale
+    vec4 height;          // rgb albedo; w: extinction at and below the base, 1/m, times density_scale
+    vec4 height_law;      // x: base height above the camera, m; y: falloff, 1/m; zw 0
+    vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude, 0 to 1
+    vec4 noise_cells;     // x: cells per metre; yzw 0
+    vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0
+    vec4 phase;           // x: Henyey-Greenstein g; yzw 0
+    vec4 temporal;        // x: steady weight of a new frame; y: oldest age, frames; z: history's radiance times z is in
+                          // this frame's scale; w: 1 where the camera has not moved since
+    vec4 jitter;          // xyz: this frame's offset in [0, 1); w: 0 samples the centre of each froxel
+    vec4 ambient;         // rgb radiance from every direction
+    vec4 sun_direction;   // xyz: unit direction in which it travels, render space
+    vec4 sun_illuminance; // rgb lux
+    vec4 esm_exponents;   // k of each cascade, per unit of shadow depth
+    vec4 esm_size;        // x: texels of a side of the ESM; y: 1 / x; z: texels of a side of a cascade; w: 1 / z
+    vec4 depth;           // view depth of device depth d: (x - d y) / (z + d w)
+    uvec4 frame;          // x: frames since the last cut; y: lights; zw 0
+};
+
+TYNDALL_INTEROP_END
+
+#endif

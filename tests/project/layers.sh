@@ -1,0 +1,32 @@
+#!/bin/sh
+# Who may include whom. Prints each include that breaks it.
+#   layers.sh ROOT
+set -eu
+cd "$1"
+broken=0
+
+# allow FOLDER PREFIXES: what stands in quotes in FOLDER's sources begins with one of PREFIXES (a|b|c).
+allow() {
+    found=$(grep -rnE --include='*.hpp' --include='*.cpp' '^ *# *include *"' "$1" | grep -vE "include *\"($2)/" || true)
+    report "$1 may include only $2" "$found"
+}
+# forbid FOLDER PATTERN WHY
+forbid() {
+    found=$(grep -rnE --include='*.hpp' --include='*.cpp' "$2" "$1" || true)
+    report "$1 $3" "$found"
+}
+report() {
+    if [ -n "$2" ]; then
+        printf '%s:\n%s\n' "$1" "$2"
+        broken=1
+    fi
+}
+
+allow rendergraph 'rendergraph'
+allow features 'rendergraph|features|shaders|spirv'
+allow engine 'rendergraph|engine|shaders/common|shaders/engine|spirv'
+forbid rendergraph '# *include *<(glm|GLFW|nlohmann)/' 'needs Vulkan headers and tl::expected only'
+forbid rendergraph '# *include *<vulkan/vulkan.h(pp)?>' 'includes vulkan_core.h and no platform headers'
+forbid features '# *include *<GLFW/' 'opens no window'
+forbid engine 'volumetrics(/|::)' 'knows no feature by name'
+exit $broken

@@ -1,0 +1,276 @@
+#include "tests/volumetrics/fog_fixture.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <glm/gtc/packing.hpp>
+
+namespace tyndall::volumetrics::test {
+namespace {
+
+using rg::Access;
+using rg::PassContext;
+using rg::PassKind;
+using tyndall::test::HostBuffer;
+
+VkImageSubresourceLayers subresource(VkImageAspectFlags aspect, std::uint32_t layers) {
+    return {aspect, 0, 0, layers};
+}
+
+/// Copies the whole of a host buffer into an image.
+void upload(rg::GraphBuilder& graph, const char* pass_name, rg::Buffer source, rg::Image& image) {
+    const rg::ImageDesc desc = *graph.describe(image);
+    auto pass = graph.add_pass(pass_name, PassKind::transfer);
+    pass.reads(source, Access::transfer_source).writes(image, Access::transfer_destination);
+    pass.executes([=, target = image](PassContext& ctx) {
+        const VkBufferImageCopy2 region{.sType = VK_STRUCTURE_TYPE_BUFFER_IMAGE_COPY_2,
+                                        .imageSubresource = subresource(rg::format_aspects(desc.format), desc.layers),
+                                        .imageExtent = desc.extent};
+        const VkCopyBufferToImageInfo2 info{.sType = VK_STRUCTURE_TYPE_COPY_BUFFER_TO_IMAGE_INFO_2,
+                                            .srcBuffer = ctx.buffer(source),
+                                            .dstImage = ctx.image(target),
+                                            .dstImageLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                            .regionCount = 1,
+                                            .pRegions = &region};
+        ctx.vk().CmdCopyBufferToImage2(ctx.cmd(), &info);
+    });
+}
+
+void download(rg::GraphBuilder& graph, const std::string& pass_name, rg::Image image, rg::Buffer& target) {
+    const rg::ImageDesc desc = *graph.describe(image);
+    auto pass = graph.add_pass(pass_name, PassKind::transfer);
+    pass.reads(image, Access::transfer_source).writes(target, Access::transfer_destination);
+    pass.executes([=, buffer = target](PassContext& ctx) {
+        const VkBufferImageCopy2 region{.sType = VK_STRUCTURE_TYPE_BUFFER_IMAGE_COPY_2,
+                                        .imageSubresource = subresource(rg::format_aspects(desc.format), desc.layers),
+                                        .imageExtent = desc.extent};
+        const VkCopyImageToBufferInfo2 info{.sType = VK_STRUCTURE_TYPE_COPY_IMAGE_TO_BUFFER_INFO_2,
+                                            .srcImage = ctx.image(image),
+                                            .srcImageLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                            .dstBuffer = ctx.buffer(buffer),
+                                            .regionCount = 1,
+                                            .pRegions = &region};
+        ctx.vk().CmdCopyImageToBuffer2(ctx.cmd(), &info);
+    });
+}
+
+void download(rg::GraphBuilder& graph, const std::string& pass_name, rg::Buffer source, rg::Buffer& target) {
+    const VkDeviceSize size_bytes = graph.describe(source)->size_bytes;
+    auto pass = graph.add_pass(pass_name, PassKind::transfer);
+    pass.reads(source, Access::transfer_source).writes(target, Access::transfer_destination);
+    pass.executes([=, buffer = target](PassContext& ctx) {
+        const VkBufferCopy region{0, 0, size_bytes};
+        ctx.vk().CmdCopyBuffer(ctx.cmd(), ctx.buffer(source), ctx.buffer(buffer), 1, &region);
+    });
+}
+
+/// Depth images are attachments in a real frame, and the layout in which they are sampled wants that usage.
+rg::ImageDesc depth_image(std::uint32_t width, std::uint32_t height, std::uint32_t layers) {
+    return {.format = VK_FORMAT_D32_SFLOAT,
+            .extent = {width, height, 1},
+            .layers = layers,
+            .extra_usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
+}
+
+void clear(rg::GraphBuilder& graph, rg::Image& image, const glm::vec4& value) {
+    auto pass = graph.add_pass("poison history", PassKind::compute);
+    pass.writes(image, Access::transfer_destination);
+    pass.executes([=, target = image](PassContext& ctx) {
+        VkClearColorValue color{};
+        std::memcpy(color.float32, &value, sizeof color.float32);
+        const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        ctx.vk().CmdClearColorImage(ctx.cmd(), ctx.image(target), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &color, 1,
+                                    &range);
+    });
+}
+
+std::vector<glm::vec4> texels(const HostBuffer& buffer, VkFormat format) {
+    std::vector<glm::vec4> result;
+    if (format == VK_FORMAT_R16G16B16A16_SFLOAT) {
+        for (const std::uint64_t texel : buffer.as<std::uint64_t>()) {
+            result.push_back(glm::unpackHalf4x16(texel));
+        }
+    } else {
+        const auto all = buffer.as<glm::vec4>();
+        result.assign(all.begin(), all.end());
+    }
+    return result;
+}
+
+} // namespace
+
+glm::dmat4 test_projection() {
+    glm::dmat4 p(0.0);
+    p[0][0] = 1.0 / tan_x;
+    p[1][1] = -1.0 / tan_y;
+    p[3][2] = near_m;
+    p[2][3] = -1.0;
+    return p;
+}
+
+Scene plain_scene() {
+    Scene scene;
+    scene.inputs.settings.storage = StorageFormat::fp32;
+    scene.inputs.settings.temporal = {.enabled = false, .jitter = false};
+    scene.inputs.camera.clip_from_view = test_projection();
+    scene.inputs.color_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+    scene.depth_m = [](std::uint32_t, std::uint32_t) { return std::numeric_limits<double>::infinity(); };
+    scene.color = [](std::uint32_t, std::uint32_t) { return glm::vec4(0.0F); };
+    return scene;
+}
+
+PixelRay pixel_ray(const Scene& scene, std::uint32_t x, std::uint32_t y) {
+    const glm::dvec3 at_one_metre(((x + 0.5) / scene.image.x * 2.0 - 1.0) * tan_x,
+                                  (1.0 - (y + 0.5) / scene.image.y * 2.0) * tan_y, -1.0);
+    return {glm::normalize(at_one_metre), glm::length(at_one_metre)};
+}
+
+void FogTest::SetUp() {
+    GpuTest::SetUp();
+    if (IsSkipped() || HasFatalFailure()) {
+        return;
+    }
+    const rg::ExecutorInfo info = executor_info();
+    make_executor(info);
+    auto made = Feature::create({.vk = &vk(),
+                                 .device = info.device,
+                                 .memory_properties = info.memory_properties,
+                                 .frames_in_flight = info.frames_in_flight});
+    ASSERT_TRUE(made) << made.error().message;
+    feature_ = std::make_unique<Feature>(std::move(*made));
+}
+
+void FogTest::TearDown() {
+    if (feature_) {
+        EXPECT_TRUE(executor().wait_idle());
+    }
+    feature_.reset();
+    GpuTest::TearDown();
+}
+
+Result FogTest::render(const Scene& scene) {
+    rg::GraphBuilder graph;
+    std::vector<rg::ImportBinding> imports;
+    const auto import_written = [&](const char* name, const HostBuffer& buffer) {
+        const rg::Buffer handle =
+            graph.import_buffer(name, {.size_bytes = buffer.size_bytes}, tyndall::test::written_by_host());
+        imports.push_back({.resource = handle.resource, .buffer = buffer.buffer});
+        return handle;
+    };
+    const auto import_read = [&](const std::string& name, VkDeviceSize size_bytes, HostBuffer& buffer) {
+        buffer = host_buffer(size_bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+        const rg::Buffer handle = graph.import_buffer(name, {.size_bytes = size_bytes}, tyndall::test::read_by_host());
+        imports.push_back({.resource = handle.resource, .buffer = buffer.buffer});
+        return handle;
+    };
+
+    // Inputs.
+    const std::size_t pixels = std::size_t{scene.image.x} * scene.image.y;
+    const HostBuffer color_data = host_buffer(pixels * sizeof(glm::vec4), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    const HostBuffer depth_data = host_buffer(pixels * sizeof(float), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    for (std::uint32_t y = 0; y < scene.image.y; ++y) {
+        for (std::uint32_t x = 0; x < scene.image.x; ++x) {
+            color_data.as<glm::vec4>()[y * scene.image.x + x] = scene.color(x, y);
+            depth_data.as<float>()[y * scene.image.x + x] = static_cast<float>(near_m / scene.depth_m(x, y));
+        }
+    }
+    rg::Image color = graph.create_image(
+        "scene color", {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {scene.image.x, scene.image.y, 1}});
+    rg::Image depth = graph.create_image("scene depth", depth_image(scene.image.x, scene.image.y, 1));
+    upload(graph, "upload color", import_written("color data", color_data), color);
+    upload(graph, "upload depth", import_written("depth data", depth_data), depth);
+
+    FrameInputs inputs = scene.inputs;
+    inputs.light_count = static_cast<std::uint32_t>(scene.lights.size());
+    inputs.frame_slot = executor().next_slot();
+    EXPECT_TRUE(executor().wait_for_slot());
+    FrameBeginResources begin;
+    if (!scene.lights.empty()) {
+        const HostBuffer data =
+            host_buffer(scene.lights.size() * sizeof(gpu::GpuLight), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        std::memcpy(data.mapped, scene.lights.data(), scene.lights.size() * sizeof(gpu::GpuLight));
+        begin.lights = import_written("lights", data);
+    }
+    ShadowResources shadow;
+    if (!scene.cascade_depths.empty()) {
+        const HostBuffer data =
+            host_buffer(scene.cascade_depths.size() * sizeof(float), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+        std::memcpy(data.mapped, scene.cascade_depths.data(), scene.cascade_depths.size() * sizeof(float));
+        const HostBuffer parameters = host_buffer(sizeof(gpu::SunCascades), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+        std::memcpy(parameters.mapped, &scene.cascades, sizeof(gpu::SunCascades));
+        shadow.cascades = graph.create_image("sun cascades", depth_image(scene.cascade_size, scene.cascade_size, 4));
+        upload(graph, "upload cascades", import_written("cascade data", data), shadow.cascades);
+        shadow.parameters = import_written("cascade parameters", parameters);
+    }
+
+    // The feature, as a host drives it.
+    const auto check = [](const tl::expected<void, Error>& result) { EXPECT_TRUE(result) << result.error().message; };
+    check(feature_->begin_frame(inputs));
+    check(feature_->declare_frame_begin(graph, begin));
+    check(feature_->declare_after_shadow_maps(graph, shadow));
+    feature_->declare_after_opaque(graph, {.color = color, .depth = depth});
+
+    // Outputs.
+    Result result;
+    HostBuffer color_out;
+    HostBuffer density_out;
+    HostBuffer in_scattered_out;
+    HostBuffer accumulated_out;
+    HostBuffer esm_out;
+    HostBuffer masks_out;
+    const auto read_image = [&](const char* name, rg::Image image, HostBuffer& buffer) {
+        const rg::ImageDesc desc = *graph.describe(image);
+        const VkDeviceSize size_bytes = VkDeviceSize{desc.extent.width} * desc.extent.height * desc.extent.depth *
+                                        desc.layers * rg::format_texel_bytes(desc.format);
+        rg::Buffer target = import_read(name, size_bytes, buffer);
+        download(graph, std::string("read ") + name, image, target);
+    };
+    read_image("color out", color, color_out);
+    const VkFormat format =
+        inputs.settings.storage == StorageFormat::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+    if (feature_->volume()) {
+        read_image("density out", feature_->stages().density, density_out);
+        read_image("accumulated out", feature_->volume()->accumulated, accumulated_out);
+        rg::Image in_scattered = feature_->volume()->in_scattered;
+        read_image("in-scattered out", in_scattered, in_scattered_out);
+        if (scene.poison) {
+            clear(graph, in_scattered, *scene.poison);
+        }
+    }
+    if (feature_->stages().esm.valid()) {
+        read_image("esm out", feature_->stages().esm, esm_out);
+    }
+    if (feature_->clusters()) {
+        const rg::Buffer masks = feature_->clusters()->masks;
+        rg::Buffer target = import_read("masks out", graph.describe(masks)->size_bytes, masks_out);
+        download(graph, "read masks", masks, target);
+    }
+    const auto bindings = feature_->bindings();
+    imports.insert(imports.end(), bindings.begin(), bindings.end());
+    for (const Omission& omission : feature_->omissions()) {
+        result.omissions.push_back(omission.what + ": " + omission.why);
+    }
+
+    const rg::DeclaredGraph declared = graph.finish();
+    for (const rg::PassDesc& pass : declared.desc.passes) {
+        result.pass_names.push_back(pass.name);
+    }
+    run(declared, imports);
+
+    result.color = texels(color_out, VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (accumulated_out.mapped != nullptr) {
+        result.density = texels(density_out, format);
+        result.in_scattered = texels(in_scattered_out, format);
+        result.accumulated = texels(accumulated_out, format);
+    }
+    if (esm_out.mapped != nullptr) {
+        result.esm.assign(esm_out.as<float>().begin(), esm_out.as<float>().end());
+    }
+    if (masks_out.mapped != nullptr) {
+        result.masks.assign(masks_out.as<std::uint32_t>().begin(), masks_out.as<std::uint32_t>().end());
+    }
+    return result;
+}
+
+} // namespace tyndall::volumetrics::test

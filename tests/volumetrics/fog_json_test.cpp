@@ -1,0 +1,129 @@
+// Every mistake in a fog file is refused with one sentence that names the key.
+#include <gtest/gtest.h>
+
+#include "features/volumetrics/fog_json.hpp"
+
+namespace tyndall::volumetrics {
+namespace {
+
+std::string refusal(std::string_view text) {
+    const auto fog = parse_fog_json(text);
+    return fog ? "accepted" : fog.error().message;
+}
+
+TEST(FogJson, EmptyObjectGivesDocumentedDefaults) {
+    const auto fog = parse_fog_json("{}");
+    ASSERT_TRUE(fog) << fog.error().message;
+    EXPECT_TRUE(is_empty(fog->medium));
+    EXPECT_EQ(fog->settings.grid.width, 160U);
+    EXPECT_EQ(fog->settings.grid.height, 90U);
+    EXPECT_EQ(fog->settings.grid.slices, 64U);
+    EXPECT_EQ(fog->settings.grid.range_m, 64.0F);
+    EXPECT_EQ(fog->settings.grid.shape_m, 16.0F);
+    EXPECT_EQ(fog->settings.storage, StorageFormat::fp16);
+    EXPECT_TRUE(fog->settings.temporal.enabled);
+}
+
+TEST(FogJson, ReadsEveryKey) {
+    const auto fog = parse_fog_json(R"({
+        "medium": {
+            "homogeneous": {"extinction_per_m": 0.02, "albedo": [0.9, 0.8, 0.7]},
+            "height": {"extinction_per_m": 0.05, "albedo": [0.6, 0.5, 0.4], "base_height_m": -3, "falloff_per_m": 0.3},
+            "noise": {"amplitude": 0.6, "scale_m": 3, "wind_m_s": [0.5, 0, -0.25]}},
+        "phase": {"g": -0.4},
+        "ambient": {"radiance": [1, 2, 3]},
+        "grid": {"width": 40, "height": 23, "slices": 16, "range_m": 100, "shape_m": 0.01},
+        "shadow": {"esm_exponent": [100, 200, 300, 400]},
+        "temporal": {"enabled": false, "new_frame_weight": 0.1, "jitter": false},
+        "storage": "fp32"})");
+    ASSERT_TRUE(fog) << fog.error().message;
+    const Medium& m = fog->medium;
+    EXPECT_EQ(m.homogeneous.extinction_per_m, 0.02F);
+    EXPECT_EQ(m.homogeneous.albedo, glm::vec3(0.9F, 0.8F, 0.7F));
+    EXPECT_EQ(m.height.extinction_per_m, 0.05F);
+    EXPECT_EQ(m.height.albedo, glm::vec3(0.6F, 0.5F, 0.4F));
+    EXPECT_EQ(m.height.base_height_m, -3.0F);
+    EXPECT_EQ(m.height.falloff_per_m, 0.3F);
+    EXPECT_EQ(m.noise.amplitude, 0.6F);
+    EXPECT_EQ(m.noise.scale_m, 3.0F);
+    EXPECT_EQ(m.noise.wind_m_s, glm::vec3(0.5F, 0.0F, -0.25F));
+    EXPECT_EQ(m.phase_g, -0.4F);
+    EXPECT_EQ(m.ambient_radiance, glm::vec3(1, 2, 3));
+    const Settings& s = fog->settings;
+    EXPECT_EQ(s.grid.width, 40U);
+    EXPECT_EQ(s.grid.height, 23U);
+    EXPECT_EQ(s.grid.slices, 16U);
+    EXPECT_EQ(s.grid.range_m, 100.0F);
+    EXPECT_EQ(s.grid.shape_m, 0.01F);
+    EXPECT_EQ(s.shadow.esm_exponent, (std::array{100.0F, 200.0F, 300.0F, 400.0F}));
+    EXPECT_FALSE(s.temporal.enabled);
+    EXPECT_EQ(s.temporal.new_frame_weight, 0.1F);
+    EXPECT_FALSE(s.temporal.jitter);
+    EXPECT_EQ(s.storage, StorageFormat::fp32);
+}
+
+TEST(FogJson, ShapeFollowsRangeUnlessGiven) {
+    const auto fog = parse_fog_json(R"({"grid": {"range_m": 1000}})");
+    ASSERT_TRUE(fog);
+    EXPECT_EQ(fog->settings.grid.shape_m, 250.0F);
+}
+
+TEST(FogJson, UnknownKeysAreNamedByPath) {
+    EXPECT_EQ(refusal(R"({"fog": {}})"), "fog is not a key of the fog file.");
+    EXPECT_EQ(refusal(R"({"medium": {"height": {"fallof_per_m": 1}}})"),
+              "medium.height.fallof_per_m is not a key of the fog file.");
+}
+
+TEST(FogJson, RepeatedKeysAreRefused) {
+    EXPECT_EQ(refusal(R"({"phase": {"g": 0.1, "g": 0.2}})"), R"(The fog file gives the key "g" twice in one object.)");
+}
+
+TEST(FogJson, WrongTypesAreNamedByPath) {
+    EXPECT_EQ(refusal("[]"), "The fog file must be an object.");
+    EXPECT_EQ(refusal(R"({"medium": 3})"), "medium must be an object.");
+    EXPECT_EQ(refusal(R"({"phase": {"g": "0.5"}})"), "phase.g must be a number.");
+    EXPECT_EQ(refusal(R"({"ambient": {"radiance": [1, 2]}})"), "ambient.radiance must be an array of 3 numbers.");
+    EXPECT_EQ(refusal(R"({"ambient": {"radiance": [1, null, 2]}})"), "ambient.radiance[1] must be a number.");
+    EXPECT_EQ(refusal(R"({"grid": {"slices": 1.5}})"), "grid.slices must be a whole number that is not negative.");
+    EXPECT_EQ(refusal(R"({"grid": {"width": -1}})"), "grid.width must be a whole number that is not negative.");
+    EXPECT_EQ(refusal(R"({"temporal": {"enabled": 1}})"), "temporal.enabled must be true or false.");
+    EXPECT_EQ(refusal(R"({"storage": "fp64"})"), R"(storage must be "fp16" or "fp32".)");
+    EXPECT_EQ(refusal(R"({"shadow": {"esm_exponent": [1, 2]}})"),
+              "shadow.esm_exponent must be one number, or an array of 4 for the cascades.");
+}
+
+TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
+    EXPECT_EQ(refusal(R"({"medium": {"homogeneous": {"extinction_per_m": -1}}})"),
+              "medium.homogeneous.extinction_per_m must be between 0 and 1e+06, not -1.");
+    EXPECT_EQ(refusal(R"({"medium": {"height": {"albedo": [1, 1, 2]}}})"),
+              "medium.height.albedo[2] must be between 0 and 1, not 2.");
+    EXPECT_EQ(refusal(R"({"medium": {"noise": {"amplitude": 1.5}}})"),
+              "medium.noise.amplitude must be between 0 and 1, not 1.5.");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 1}})"), "phase.g must be between -0.999 and 0.999, not 1.");
+    EXPECT_EQ(refusal(R"({"grid": {"width": 0}})"), "grid.width must be between 2 and 1024, not 0.");
+    EXPECT_EQ(refusal(R"({"grid": {"range_m": 0}})").substr(0, 12), "grid.range_m");
+    EXPECT_EQ(refusal(R"({"grid": {"range_m": 10, "shape_m": 1e-4}})").substr(0, 12), "grid.shape_m");
+    EXPECT_EQ(refusal(R"({"shadow": {"esm_exponent": 0}})"), "shadow.esm_exponent must be between 1 and 1000, not 0.");
+    EXPECT_EQ(refusal(R"({"temporal": {"new_frame_weight": 0}})"),
+              "temporal.new_frame_weight must be between 0.001 and 1, not 0.");
+}
+
+TEST(FogJson, NumbersThatSinglePrecisionLacksAreRefused) {
+    EXPECT_EQ(refusal(R"({"phase": {"g": 1e60}})"), "phase.g must be a finite number of single precision.");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 1e999}})").substr(0, 30), "The fog file is not valid JSON");
+    EXPECT_EQ(refusal(R"({"phase": {"g": NaN}})"), "The fog file is not valid JSON near byte 17.");
+}
+
+TEST(FogJson, BrokenTextSaysWhere) {
+    EXPECT_EQ(refusal(""), "The fog file is not valid JSON near byte 1.");
+    EXPECT_EQ(refusal("{\"phase\": "), "The fog file is not valid JSON near byte 11.");
+    EXPECT_EQ(refusal("{} {}").substr(0, 30), "The fog file is not valid JSON");
+}
+
+TEST(FogJson, DeepNestingIsNoCrash) {
+    const std::string text = R"({"medium": )" + std::string(100000, '[') + std::string(100000, ']') + "}";
+    EXPECT_EQ(refusal(text), "medium must be an object.");
+}
+
+} // namespace
+} // namespace tyndall::volumetrics
