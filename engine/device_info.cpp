@@ -86,16 +86,11 @@ DeviceInfo describe(VkPhysicalDevice device, std::uint32_t index) {
 
 int rank(VkPhysicalDeviceType type) {
     switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-        return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-        return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-        return 2;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-        return 3;
-    default:
-        return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return 3;
+    default: return 4;
     }
 }
 
@@ -117,7 +112,7 @@ bool is_meant(const DeviceInfo& device, std::string_view choice) {
 
 } // namespace
 
-std::vector<VkPhysicalDevice> physical_devices(const Instance& instance) {
+std::vector<VkPhysicalDevice> physical_devices(const VulkanInstance& instance) {
     std::uint32_t count = 0;
     vkEnumeratePhysicalDevices(instance.handle(), &count, nullptr);
     std::vector<VkPhysicalDevice> devices(count);
@@ -125,7 +120,7 @@ std::vector<VkPhysicalDevice> physical_devices(const Instance& instance) {
     return devices;
 }
 
-std::vector<DeviceInfo> list_devices(const Instance& instance) {
+std::vector<DeviceInfo> list_devices(const VulkanInstance& instance) {
     std::vector<DeviceInfo> devices;
     for (VkPhysicalDevice device : physical_devices(instance)) {
         devices.push_back(describe(device, static_cast<std::uint32_t>(devices.size())));
@@ -164,16 +159,11 @@ tl::expected<std::uint32_t, Error> choose_device(std::span<const DeviceInfo> dev
 
 std::string_view device_type_name(VkPhysicalDeviceType type) {
     switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-        return "discrete GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-        return "integrated GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-        return "virtual GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-        return "processor";
-    default:
-        return "other";
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "processor";
+    default: return "other";
     }
 }
 

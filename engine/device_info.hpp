@@ -44,8 +44,8 @@ struct DeviceInfo {
 };
 
 /// In the loader's order, which `index` counts.
-[[nodiscard]] std::vector<DeviceInfo> list_devices(const Instance& instance);
-[[nodiscard]] std::vector<VkPhysicalDevice> physical_devices(const Instance& instance);
+[[nodiscard]] std::vector<DeviceInfo> list_devices(const VulkanInstance& instance);
+[[nodiscard]] std::vector<VkPhysicalDevice> physical_devices(const VulkanInstance& instance);
 
 /// The index of the device that `choice` means: part of its name or driver (case does not matter), or its index; empty:
 /// the best that can be used. Of several, discrete goes before integrated before virtual before a processor, then the

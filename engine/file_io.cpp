@@ -17,8 +17,8 @@ struct CloseFile {
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
 tl::unexpected<Error> failed(const char* what, const std::filesystem::path& path, int error) {
-    return tl::unexpected(Error{std::string("cannot ") + what + " '" + path.string() +
-                                "': " + std::generic_category().message(error)});
+    return tl::unexpected(
+        Error{std::string("cannot ") + what + " '" + path.string() + "': " + std::generic_category().message(error)});
 }
 
 /// Unlike any other writer's, so that two that write one file do not meet in the unfinished one.

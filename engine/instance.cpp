@@ -56,7 +56,8 @@ void ValidationLog::clear() {
     warnings_.clear();
 }
 
-tl::expected<Instance, Error> Instance::create(Validation validation, const std::vector<const char*>& extensions) {
+tl::expected<VulkanInstance, Error> VulkanInstance::create(Validation validation,
+                                                           const std::vector<const char*>& extensions) {
     std::uint32_t version = 0;
     if (vkEnumerateInstanceVersion(&version) != VK_SUCCESS || version < VK_API_VERSION_1_3) {
         return tl::unexpected(Error{"The Vulkan loader is older than 1.3; install a newer libvulkan1"});
@@ -66,7 +67,7 @@ tl::expected<Instance, Error> Instance::create(Validation validation, const std:
         return tl::unexpected(Error{"Validation is asked for, but VK_LAYER_KHRONOS_validation is not installed "
                                     "(package vulkan-validationlayers)"});
     }
-    Instance instance;
+    VulkanInstance instance;
     std::vector<const char*> enabled = extensions;
     instance.debug_utils_ = has_extension(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
                             (validate && has_extension(validation_layer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
@@ -83,15 +84,16 @@ tl::expected<Instance, Error> Instance::create(Validation validation, const std:
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity =
             VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
+        // Not GENERAL: the loader's complaints about other drivers of the machine are none of ours.
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = instance.log_.get()};
     const std::array synchronization = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
-    const VkValidationFeaturesEXT features{
-        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
-        .pNext = &messenger,
-        .enabledValidationFeatureCount = validation == Validation::core_and_synchronization ? 1U : 0U,
-        .pEnabledValidationFeatures = synchronization.data()};
+    const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                           .pNext = &messenger,
+                                           .enabledValidationFeatureCount =
+                                               validation == Validation::core_and_synchronization ? 1U : 0U,
+                                           .pEnabledValidationFeatures = synchronization.data()};
     const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                         .pApplicationName = "tyndall",
                                         .pEngineName = "tyndall",
@@ -114,12 +116,12 @@ tl::expected<Instance, Error> Instance::create(Validation validation, const std:
     return instance;
 }
 
-Instance::Instance(Instance&& other) noexcept
+VulkanInstance::VulkanInstance(VulkanInstance&& other) noexcept
     : instance_(std::exchange(other.instance_, VK_NULL_HANDLE)),
       messenger_(std::exchange(other.messenger_, VK_NULL_HANDLE)), debug_utils_(other.debug_utils_),
       log_(std::move(other.log_)) {}
 
-Instance& Instance::operator=(Instance&& other) noexcept {
+VulkanInstance& VulkanInstance::operator=(VulkanInstance&& other) noexcept {
     if (this != &other) {
         destroy();
         instance_ = std::exchange(other.instance_, VK_NULL_HANDLE);
@@ -130,9 +132,11 @@ Instance& Instance::operator=(Instance&& other) noexcept {
     return *this;
 }
 
-Instance::~Instance() { destroy(); }
+VulkanInstance::~VulkanInstance() {
+    destroy();
+}
 
-void Instance::destroy() {
+void VulkanInstance::destroy() {
     if (messenger_ != VK_NULL_HANDLE) {
         const auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
             vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));

@@ -29,24 +29,24 @@ private:
     std::vector<std::string> warnings_;
 };
 
-class Instance {
+class VulkanInstance {
 public:
-    /// `extensions`: beside those that we need ourselves, as a window wants. Fails when there is no Vulkan 1.3 loader, or
-    /// validation is asked for and its layer is not installed.
-    [[nodiscard]] static tl::expected<Instance, Error> create(Validation validation,
-                                                              const std::vector<const char*>& extensions = {});
-    Instance(Instance&& other) noexcept;
-    Instance& operator=(Instance&& other) noexcept;
-    Instance(const Instance&) = delete;
-    Instance& operator=(const Instance&) = delete;
-    ~Instance();
+    /// `extensions`: beside those that we need ourselves, as a window wants. Fails when there is no Vulkan 1.3 loader,
+    /// or validation is asked for and its layer is not installed.
+    [[nodiscard]] static tl::expected<VulkanInstance, Error> create(Validation validation,
+                                                                    const std::vector<const char*>& extensions = {});
+    VulkanInstance(VulkanInstance&& other) noexcept;
+    VulkanInstance& operator=(VulkanInstance&& other) noexcept;
+    VulkanInstance(const VulkanInstance&) = delete;
+    VulkanInstance& operator=(const VulkanInstance&) = delete;
+    ~VulkanInstance();
 
     [[nodiscard]] VkInstance handle() const { return instance_; }
     [[nodiscard]] bool has_debug_utils() const { return debug_utils_; }
     [[nodiscard]] ValidationLog& log() const { return *log_; }
 
 private:
-    Instance() = default;
+    VulkanInstance() = default;
     void destroy();
 
     VkInstance instance_ = VK_NULL_HANDLE;

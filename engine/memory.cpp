@@ -29,19 +29,21 @@ std::uint32_t memory_type(const Device& device, std::uint32_t bits, MemoryUse us
     return ~0U;
 }
 
-std::string mebibytes(VkDeviceSize bytes) { return std::to_string((bytes + (1U << 20U) - 1) >> 20U) + " MiB"; }
+std::string mebibytes(VkDeviceSize bytes) {
+    return std::to_string((bytes + (1U << 20U) - 1) >> 20U) + " MiB";
+}
 
 tl::expected<VkDeviceMemory, Error> allocate(const Device& device, const VkMemoryRequirements& needs, MemoryUse use) {
     const std::uint32_t type = memory_type(device, needs.memoryTypeBits, use);
     if (type == ~0U) {
         return tl::unexpected(Error{"Device '" + device.info().name + "' has no memory of the kind that is needed"});
     }
-    const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                    .allocationSize = needs.size,
-                                    .memoryTypeIndex = type};
+    const VkMemoryAllocateInfo info{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size, .memoryTypeIndex = type};
     VkDeviceMemory memory = VK_NULL_HANDLE;
     if (device.vk().AllocateMemory(device.handle(), &info, nullptr, &memory) != VK_SUCCESS) {
-        return tl::unexpected(Error{"Device '" + device.info().name + "' is out of memory: " + mebibytes(needs.size) + " were asked for"});
+        return tl::unexpected(Error{"Device '" + device.info().name + "' is out of memory: " + mebibytes(needs.size) +
+                                    " were asked for"});
     }
     return memory;
 }
@@ -92,8 +94,8 @@ Buffer::~Buffer() {
     }
 }
 
-tl::expected<Image, Error> Image::create(const Device& device, const ImageInfo& info) {
-    Image image;
+tl::expected<DeviceImage, Error> DeviceImage::create(const Device& device, const ImageInfo& info) {
+    DeviceImage image;
     image.device_ = &device;
     image.info_ = info;
     const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -123,11 +125,12 @@ tl::expected<Image, Error> Image::create(const Device& device, const ImageInfo& 
     const VkImageViewType view_type = info.type == VK_IMAGE_TYPE_3D ? VK_IMAGE_VIEW_TYPE_3D
                                       : info.layers > 1             ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
                                                                     : VK_IMAGE_VIEW_TYPE_2D;
-    const VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                     .image = image.image_,
-                                     .viewType = view_type,
-                                     .format = info.format,
-                                     .subresourceRange = {rg::format_aspects(info.format), 0, info.mips, 0, info.layers}};
+    const VkImageViewCreateInfo view{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = image.image_,
+        .viewType = view_type,
+        .format = info.format,
+        .subresourceRange = {rg::format_aspects(info.format), 0, info.mips, 0, info.layers}};
     if (vk.BindImageMemory(device.handle(), image.image_, image.memory_, 0) != VK_SUCCESS ||
         vk.CreateImageView(device.handle(), &view, nullptr, &image.view_) != VK_SUCCESS) {
         return tl::unexpected(Error{"No view of an image of " + size + " could be made"});
@@ -135,7 +138,7 @@ tl::expected<Image, Error> Image::create(const Device& device, const ImageInfo& 
     return image;
 }
 
-Image& Image::operator=(Image&& other) noexcept {
+DeviceImage& DeviceImage::operator=(DeviceImage&& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(image_, other.image_);
     std::swap(view_, other.view_);
@@ -144,7 +147,7 @@ Image& Image::operator=(Image&& other) noexcept {
     return *this;
 }
 
-Image::~Image() {
+DeviceImage::~DeviceImage() {
     if (device_ != nullptr) {
         device_->vk().DestroyImageView(device_->handle(), view_, nullptr);
         device_->vk().DestroyImage(device_->handle(), image_, nullptr);

@@ -60,15 +60,15 @@ struct ImageInfo {
 };
 
 /// An image in device memory with a view of all of it. Move-only.
-class Image {
+class DeviceImage {
 public:
-    [[nodiscard]] static tl::expected<Image, Error> create(const Device& device, const ImageInfo& info);
-    Image() = default;
-    Image(Image&& other) noexcept { *this = std::move(other); }
-    Image& operator=(Image&& other) noexcept;
-    Image(const Image&) = delete;
-    Image& operator=(const Image&) = delete;
-    ~Image();
+    [[nodiscard]] static tl::expected<DeviceImage, Error> create(const Device& device, const ImageInfo& info);
+    DeviceImage() = default;
+    DeviceImage(DeviceImage&& other) noexcept { *this = std::move(other); }
+    DeviceImage& operator=(DeviceImage&& other) noexcept;
+    DeviceImage(const DeviceImage&) = delete;
+    DeviceImage& operator=(const DeviceImage&) = delete;
+    ~DeviceImage();
 
     [[nodiscard]] VkImage handle() const { return image_; }
     [[nodiscard]] VkImageView view() const { return view_; }

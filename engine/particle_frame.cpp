@@ -62,11 +62,12 @@ std::uint32_t particle_key_count(std::uint32_t particles) {
     return std::bit_ceil(std::max(particles, 2U));
 }
 
-gpu::ParticleFrame make_particle_frame(const ParticleView& view, std::span<const ParticleEmitter> emitters) {
-    const glm::mat4& clip = view.clip_from_view;
+gpu::ParticleFrame make_particle_frame(const FrameView& view, const ParticleLight& light,
+                                       std::span<const ParticleEmitter> emitters) {
+    const glm::mat4 clip(view.clip_from_view);
     const auto row = [&](int i) { return glm::vec4(clip[0][i], clip[1][i], clip[2][i], clip[3][i]); };
     gpu::ParticleFrame frame{};
-    frame.view_from_render = view.view_from_render;
+    frame.view_from_render = glm::mat4(view.view_from_render);
     frame.clip_from_view = clip;
     frame.frustum[0] = normalized_plane(row(3) + row(0));
     frame.frustum[1] = normalized_plane(row(3) - row(0));
@@ -76,12 +77,12 @@ gpu::ParticleFrame make_particle_frame(const ParticleView& view, std::span<const
     frame.depth = glm::vec4(clip[3][2], clip[3][3], clip[2][2], -clip[2][3]);
     const float near_m = (clip[3][2] - clip[3][3]) / (clip[2][2] - clip[2][3]);
     frame.near_size =
-        glm::vec4(near_m, static_cast<float>(view.extent.width), static_cast<float>(view.extent.height), 0.0F);
-    frame.ambient = glm::vec4(view.ambient_radiance, 0.0F);
-    frame.sun_illuminance = glm::vec4(view.sun_illuminance_lux, 0.0F);
+        glm::vec4(near_m, static_cast<float>(view.size.width), static_cast<float>(view.size.height), 0.0F);
+    frame.ambient = glm::vec4(light.ambient_radiance, 0.0F);
+    frame.sun_illuminance = glm::vec4(light.sun_illuminance_lux, 0.0F);
     const std::uint32_t particles = particle_count(emitters);
     frame.counts = glm::uvec4(static_cast<std::uint32_t>(emitters.size()), particles, particle_key_count(particles),
-                              view.light_count);
+                              light.light_count);
     for (std::size_t i = 0; i < waves.size(); ++i) {
         const Wave& wave = waves[i];
         frame.wave_number[i] = glm::vec4(wave.wave_number, wave.frequency);
@@ -90,7 +91,7 @@ gpu::ParticleFrame make_particle_frame(const ParticleView& view, std::span<const
     return frame;
 }
 
-std::vector<gpu::GpuEmitter> make_gpu_emitters(const ParticleView& view, std::span<const ParticleEmitter> emitters) {
+std::vector<gpu::GpuEmitter> make_gpu_emitters(const FrameView& view, std::span<const ParticleEmitter> emitters) {
     std::vector<gpu::GpuEmitter> result;
     result.reserve(emitters.size());
     std::uint32_t first = 0;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
-#include "engine/particle_programs.hpp"
+#include "engine/device.hpp"
+#include "engine/pipelines.hpp"
 #include "rendergraph/executor.hpp"
 #include "rendergraph/graph.hpp"
 
@@ -12,7 +12,8 @@ namespace tyndall::engine {
 
 class ParticlePasses {
 public:
-    [[nodiscard]] static tl::expected<std::unique_ptr<ParticlePasses>, Error> create(const ParticleDevice& device);
+    /// `device` outlives the passes.
+    [[nodiscard]] static tl::expected<ParticlePasses, Error> create(const Device& device, VkPipelineCache cache);
 
     /// "particle simulation": `frame` (a gpu::ParticleFrame, then gpu::GpuEmitter[]) -> `particles`
     /// (gpu::GpuParticle[particle_count]) and `keys` (two words each, [key_count]): depth key and slot, the keys of
@@ -33,15 +34,22 @@ public:
     static constexpr std::uint32_t largest_block = 2048;
 
 private:
-    explicit ParticlePasses(const ParticleDevice& device) : programs_(device) {}
-    [[nodiscard]] tl::expected<void, Error> make_programs();
+    /// A pipeline and the layout for its push descriptors and constants.
+    struct Program {
+        DescriptorSetLayout set;
+        PipelineLayout layout;
+        Pipeline pipeline;
+    };
+    struct Wanted;
+    ParticlePasses() = default;
+    [[nodiscard]] static tl::expected<Program, Error> make_program(const Device& device, VkPipelineCache cache,
+                                                                   const Wanted& wanted);
 
-    ParticlePrograms programs_;
-    ParticleProgram simulation_;
-    ParticleProgram sort_block_;
-    ParticleProgram exchange_;
-    ParticleProgram merge_block_;
-    ParticleProgram split_;
+    Program simulation_;
+    Program sort_block_;
+    Program exchange_;
+    Program merge_block_;
+    Program split_;
 };
 
 } // namespace tyndall::engine

@@ -2,17 +2,16 @@
 // can be drawn; each frame simulates, sorts back to front and splits the particles into the intervals between the
 // sorted transparent draws, so that smoke lies correctly before, between and behind panes of glass.
 //
-//   ParticleDraws draws = *particles.declare(graph, view, split_depths_m, slot);   // at frame_begin
-//   particles.add_reads(transparent_pass, draws, lighting);
+//   ParticleDraws draws = *particles.declare(graph, view, light, split_depths_m); // at frame_begin
+//   particles.add_reads(transparent_pass, draws, surroundings);
 //   transparent_pass.executes([=, &particles](rg::PassContext& ctx) {
-//       for (std::uint32_t i = 0; i < panes; ++i) { particles.draw(ctx, draws, lighting, i); draw_pane(ctx, i); }
-//       particles.draw(ctx, draws, lighting, panes);
+//       for (std::uint32_t i = 0; i < panes; ++i) { particles.draw(ctx, draws, surroundings, i); draw_pane(ctx, i); }
+//       particles.draw(ctx, draws, surroundings, panes);
 //   });
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,7 +19,8 @@
 #include <tl/expected.hpp>
 
 #include "engine/error.hpp"
-#include "engine/particle_buffer.hpp"
+#include "engine/frame.hpp"
+#include "engine/memory.hpp"
 #include "engine/particle_frame.hpp"
 #include "engine/particle_passes.hpp"
 #include "engine/particles_json.hpp"
@@ -39,75 +39,70 @@ struct ParticleDraws {
     std::array<rg::ImportBinding, 2> imports{}; ///< what the executor is to bind in this frame
 };
 
-/// Where particles take light and fog from. Without a scattering volume they are lit by sun, lights and ambient of the
-/// ParticleView, and not fogged.
-struct ParticleLighting {
-    struct ScatteringVolume {
-        rg::Image accumulated;  ///< see shaders/common/scattering_volume.glsl
-        rg::Image in_scattered; ///< of the same
-        rg::Buffer parameters;  ///< uniform, begins with a gpu::ScatteringVolume
-    };
-    struct SunShadow {
-        rg::Image cascades;    ///< see shaders/common/sun_shadow.h
-        rg::Buffer parameters; ///< uniform, a gpu::SunCascades
-    };
+/// Where particles take light and fog from, and what hides them. Without a scattering volume they are lit by sun,
+/// lights and ambient of ParticleLight, and not fogged.
+struct ParticleSurroundings {
     rg::Image scene_depth; ///< of the opaque scene, reverse-z, at the size of the colour target
-    std::optional<ScatteringVolume> scattering;
+    std::optional<ScatteringVolumeImages> scattering;
     // Read only where there is no scattering volume:
     std::optional<SunShadow> sun_shadow; ///< absent: the sun reaches everything
-    std::optional<rg::Buffer> lights;    ///< gpu::GpuLight[ParticleView::light_count]; absent: none
+    std::optional<SceneLights> lights;   ///< absent: none
 };
 
 class ParticleSystem {
 public:
-    /// `emitters` is not empty. `frames_in_flight` as the executor has.
-    [[nodiscard]] static tl::expected<std::unique_ptr<ParticleSystem>, Error>
-    create(const ParticleDevice& device, std::vector<ParticleEmitter> emitters, std::uint32_t frames_in_flight,
-           VkFormat color_format, VkFormat depth_format);
-    ParticleSystem(const ParticleSystem&) = delete;
-    ParticleSystem& operator=(const ParticleSystem&) = delete;
-    ~ParticleSystem(); ///< no frame that it declared may be in flight
+    /// `emitters` is not empty. `frames_in_flight` as the executor has. `device` outlives the system.
+    [[nodiscard]] static tl::expected<ParticleSystem, Error> create(const Device& device, VkPipelineCache cache,
+                                                                    std::vector<ParticleEmitter> emitters,
+                                                                    std::uint32_t frames_in_flight,
+                                                                    VkFormat color_format, VkFormat depth_format);
 
     /// Adds the passes "particle simulation", "particle sort" and "particle split". `split_depths_m` are the view
-    /// depths of the sorted transparent draws, back to front. Writes the host's data of `frame_slot`
-    /// (Executor::next_slot, after wait_for_slot). The error is the device's: out of memory.
-    [[nodiscard]] tl::expected<ParticleDraws, Error> declare(rg::GraphBuilder& graph, const ParticleView& view,
-                                                             std::span<const float> split_depths_m,
-                                                             std::uint32_t frame_slot);
+    /// depths of the sorted transparent draws, back to front. Writes the host's data of `view.frame_slot`, which no
+    /// frame in flight may read any more. The error is the device's: out of memory.
+    [[nodiscard]] tl::expected<ParticleDraws, Error> declare(rg::GraphBuilder& graph, const FrameView& view,
+                                                             const ParticleLight& light,
+                                                             std::span<const float> split_depths_m);
 
     /// Declares what `draw` reads. The pass itself declares its colour target and reads of the scene's depth as a
     /// depth attachment.
-    void add_reads(rg::PassBuilder& pass, const ParticleDraws& draws, const ParticleLighting& lighting) const;
+    void add_reads(rg::PassBuilder& pass, const ParticleDraws& draws, const ParticleSurroundings& surroundings) const;
 
     /// Draws interval `interval` of [0, draws.interval_count): 0 lies behind the farthest split depth, the last one
     /// before the nearest. A particle at the very depth of a split is in the nearer interval. Binds its own pipeline
     /// and descriptors.
-    void draw(rg::PassContext& ctx, const ParticleDraws& draws, const ParticleLighting& lighting,
+    void draw(rg::PassContext& ctx, const ParticleDraws& draws, const ParticleSurroundings& surroundings,
               std::uint32_t interval) const;
 
     [[nodiscard]] std::uint32_t count() const { return particle_count(emitters_); }
 
 private:
-    struct Slot {
-        ParticleBuffer frame;
-        ParticleBuffer splits; ///< grows when a frame has more transparent draws
+    struct Program {
+        DescriptorSetLayout set;
+        PipelineLayout layout;
+        Pipeline pipeline;
     };
-    ParticleSystem(const ParticleDevice& device, std::vector<ParticleEmitter> emitters)
-        : device_(device), emitters_(std::move(emitters)), programs_(device) {}
-    [[nodiscard]] tl::expected<void, Error> make_billboards(VkFormat color_format, VkFormat depth_format);
-    [[nodiscard]] tl::expected<void, Error> make_sampler(VkFilter filter, VkSampler& sampler);
-    [[nodiscard]] tl::expected<void, Error> write_host_data(const ParticleView& view,
-                                                            std::span<const float> split_depths_m, Slot& slot);
+    struct Slot {
+        Buffer frame;
+        Buffer splits; ///< grows when a frame has more transparent draws
+    };
+    ParticleSystem(const Device& device, std::vector<ParticleEmitter> emitters, ParticlePasses passes)
+        : device_(&device), emitters_(std::move(emitters)), passes_(std::move(passes)) {}
+    [[nodiscard]] tl::expected<void, Error> make_billboards(VkPipelineCache cache, VkFormat color_format,
+                                                            VkFormat depth_format);
+    [[nodiscard]] tl::expected<void, Error> make_samplers();
+    [[nodiscard]] tl::expected<void, Error> make_slots(std::uint32_t count);
+    [[nodiscard]] tl::expected<void, Error> write_host_data(const FrameView& view, const ParticleLight& light,
+                                                            std::span<const float> split_depths_m);
+    [[nodiscard]] const Program& program_for(const ParticleSurroundings& surroundings) const;
 
-    ParticleDevice device_;
+    const Device* device_;
     std::vector<ParticleEmitter> emitters_;
-    std::unique_ptr<ParticlePasses> passes_;
-    ParticlePrograms programs_;
-    ParticleProgram scattering_program_;
-    std::array<ParticleProgram, 4> direct_programs_{}; ///< by 2 * sun shadow + lights
-    VkSampler linear_ = VK_NULL_HANDLE;
-    VkSampler nearest_ = VK_NULL_HANDLE;
-    std::vector<Slot> slots_;
+    ParticlePasses passes_;
+    std::array<Program, 5> programs_; ///< by 2 * sun shadow + lights; the last one with a scattering volume
+    DeviceSampler linear_;
+    DeviceSampler nearest_;
+    std::vector<Slot> slots_; ///< by frame slot
 };
 
 } // namespace tyndall::engine

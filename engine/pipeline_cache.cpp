@@ -1,16 +1,32 @@
+#include <array>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <string>
 #include <system_error>
 #include <utility>
 
-#include <unistd.h>
-
+#include "engine/file_io.hpp"
 #include "engine/pipelines.hpp"
 
 namespace tyndall::engine {
 namespace {
+
+/// Ahead of the driver's data: drivers trust what they are given, so that a file cut short or changed must not reach
+/// one.
+struct Seal {
+    std::array<char, 8> magic = {'t', 'y', 'n', 'd', 'p', 'c', '0', '1'};
+    std::uint64_t size_bytes = 0;
+    std::uint64_t checksum = 0;
+};
+
+/// FNV-1a, 64 bits (Fowler, Noll, Vo).
+std::uint64_t checksum(std::span<const std::byte> data) {
+    std::uint64_t hash = 0xcbf29ce484222325ULL;
+    for (const std::byte byte : data) {
+        hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;
+    }
+    return hash;
+}
 
 std::filesystem::path default_folder() {
     if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0') {
@@ -32,8 +48,8 @@ std::string hexadecimal(const std::uint8_t (&bytes)[VK_UUID_SIZE]) {
     return text;
 }
 
-/// Drivers trust their own caches, so a cache must carry this very device's header before it is handed over.
-bool belongs_to(const Device& device, const std::vector<char>& data) {
+/// Whether the driver's data carries this very device's header (VkPipelineCacheHeaderVersionOne).
+bool belongs_to(const Device& device, std::span<const std::byte> data) {
     VkPipelineCacheHeaderVersionOne header;
     if (data.size() < sizeof(header)) {
         return false;
@@ -45,21 +61,32 @@ bool belongs_to(const Device& device, const std::vector<char>& data) {
            std::memcmp(header.pipelineCacheUUID, mine.pipelineCacheUUID, VK_UUID_SIZE) == 0;
 }
 
+/// The driver's data in the content of a file; empty when it is broken or of another device.
+std::span<const std::byte> unsealed(const Device& device, std::span<const std::byte> content) {
+    Seal seal;
+    const Seal expected;
+    if (content.size() < sizeof(seal)) {
+        return {};
+    }
+    std::memcpy(&seal, content.data(), sizeof(seal));
+    const std::span<const std::byte> data = content.subspan(sizeof(seal));
+    const bool whole =
+        seal.magic == expected.magic && seal.size_bytes == data.size() && seal.checksum == checksum(data);
+    return whole && belongs_to(device, data) ? data : std::span<const std::byte>{};
+}
+
 } // namespace
 
 tl::expected<PipelineCache, Error> PipelineCache::create(const Device& device, const std::filesystem::path& folder) {
     PipelineCache cache;
     cache.device_ = &device;
     const std::filesystem::path in = folder.empty() ? default_folder() : folder;
-    std::vector<char> data;
+    std::vector<std::byte> content;
     if (!in.empty()) {
         cache.file_ = in / ("pipelines-" + hexadecimal(device.properties().pipelineCacheUUID) + ".bin");
-        std::ifstream file(cache.file_, std::ios::binary);
-        data.assign(std::istreambuf_iterator<char>(file), {});
-        if (!belongs_to(device, data)) {
-            data.clear();
-        }
+        content = read_file(cache.file_).value_or(std::vector<std::byte>{});
     }
+    const std::span<const std::byte> data = unsealed(device, content);
     const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                          .initialDataSize = data.size(),
                                          .pInitialData = data.data()};
@@ -85,25 +112,21 @@ bool PipelineCache::save() const {
     if (file_.empty()) {
         return false;
     }
+    const rg::DeviceTable& vk = device_->vk();
     std::size_t size = 0;
-    device_->vk().GetPipelineCacheData(device_->handle(), cache_, &size, nullptr);
-    std::vector<char> data(size);
-    if (device_->vk().GetPipelineCacheData(device_->handle(), cache_, &size, data.data()) != VK_SUCCESS) {
+    if (vk.GetPipelineCacheData(device_->handle(), cache_, &size, nullptr) != VK_SUCCESS) {
         return false;
     }
-    std::error_code error;
-    std::filesystem::create_directories(file_.parent_path(), error);
-    // Processes that end at the same time each rename a whole file into place.
-    const std::filesystem::path beside = file_.string() + "." + std::to_string(getpid());
-    {
-        std::ofstream file(beside, std::ios::binary);
-        if (!file.write(data.data(), static_cast<std::streamsize>(size))) {
-            std::filesystem::remove(beside, error);
-            return false;
-        }
+    std::vector<std::byte> content(sizeof(Seal) + size);
+    if (vk.GetPipelineCacheData(device_->handle(), cache_, &size, content.data() + sizeof(Seal)) != VK_SUCCESS) {
+        return false;
     }
-    std::filesystem::rename(beside, file_, error);
-    return !error;
+    content.resize(sizeof(Seal) + size);
+    const Seal seal{.size_bytes = size, .checksum = checksum(std::span(content).subspan(sizeof(Seal)))};
+    std::memcpy(content.data(), &seal, sizeof(seal));
+    std::error_code ignored; // replace_file tells whether the folder is there
+    std::filesystem::create_directories(file_.parent_path(), ignored);
+    return replace_file(file_, content).has_value();
 }
 
 } // namespace tyndall::engine

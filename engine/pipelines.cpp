@@ -114,7 +114,8 @@ tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkP
     const bool has_fragment = !info.fragment_spirv.empty();
     const ShaderModule fragment(device, has_fragment ? info.fragment_spirv : info.vertex_spirv);
     if (vertex.result() != VK_SUCCESS || fragment.result() != VK_SUCCESS) {
-        return tl::unexpected(failed("A shader module", vertex.result() != VK_SUCCESS ? vertex.result() : fragment.result()));
+        return tl::unexpected(
+            failed("A shader module", vertex.result() != VK_SUCCESS ? vertex.result() : fragment.result()));
     }
     const Specialization specialization(info.constants);
     const std::array stages = {vertex.stage(VK_SHADER_STAGE_VERTEX_BIT, specialization.info),
@@ -127,9 +128,8 @@ tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkP
         .pVertexAttributeDescriptions = info.vertex_attributes.data()};
     const VkPipelineInputAssemblyStateCreateInfo assembly{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO, .topology = info.topology};
-    const VkPipelineViewportStateCreateInfo viewport{.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-                                                     .viewportCount = 1,
-                                                     .scissorCount = 1};
+    const VkPipelineViewportStateCreateInfo viewport{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
     const VkPipelineRasterizationStateCreateInfo rasterization{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
         .depthClampEnable = info.depth_clamp ? VK_TRUE : VK_FALSE,
@@ -138,15 +138,16 @@ tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkP
         .frontFace = info.front,
         .depthBiasEnable = info.dynamic_depth_bias ? VK_TRUE : VK_FALSE,
         .lineWidth = 1.0F};
-    const VkPipelineMultisampleStateCreateInfo multisample{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO, .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-    const VkPipelineDepthStencilStateCreateInfo depth{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = info.depth_test ? VK_TRUE : VK_FALSE,
-        .depthWriteEnable = info.depth_write ? VK_TRUE : VK_FALSE,
-        .depthCompareOp = info.depth_compare};
-    constexpr VkColorComponentFlags rgba = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                                           VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    const VkPipelineMultisampleStateCreateInfo multisample{.sType =
+                                                               VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                                                           .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+    const VkPipelineDepthStencilStateCreateInfo depth{.sType =
+                                                          VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+                                                      .depthTestEnable = info.depth_test ? VK_TRUE : VK_FALSE,
+                                                      .depthWriteEnable = info.depth_write ? VK_TRUE : VK_FALSE,
+                                                      .depthCompareOp = info.depth_compare};
+    constexpr VkColorComponentFlags rgba =
+        VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     std::vector<VkPipelineColorBlendAttachmentState> blends(info.blends.begin(), info.blends.end());
     blends.resize(info.color_formats.size(), {.colorWriteMask = rgba});
     const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
@@ -160,13 +161,14 @@ tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkP
         dynamic.push_back(VK_DYNAMIC_STATE_DEPTH_BIAS);
     }
     const VkPipelineDynamicStateCreateInfo dynamic_state{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-                                                         .dynamicStateCount = static_cast<std::uint32_t>(dynamic.size()),
+                                                         .dynamicStateCount =
+                                                             static_cast<std::uint32_t>(dynamic.size()),
                                                          .pDynamicStates = dynamic.data()};
-    const VkPipelineRenderingCreateInfo rendering{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-        .colorAttachmentCount = static_cast<std::uint32_t>(info.color_formats.size()),
-        .pColorAttachmentFormats = info.color_formats.data(),
-        .depthAttachmentFormat = info.depth_format};
+    const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                                  .colorAttachmentCount =
+                                                      static_cast<std::uint32_t>(info.color_formats.size()),
+                                                  .pColorAttachmentFormats = info.color_formats.data(),
+                                                  .depthAttachmentFormat = info.depth_format};
     const VkGraphicsPipelineCreateInfo create{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
                                               .pNext = &rendering,
                                               .stageCount = has_fragment ? 2U : 1U,
@@ -188,13 +190,13 @@ tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkP
     return Pipeline(device, pipeline);
 }
 
-tl::expected<Sampler, Error> create_sampler(const Device& device, const VkSamplerCreateInfo& info) {
+tl::expected<DeviceSampler, Error> create_sampler(const Device& device, const VkSamplerCreateInfo& info) {
     VkSampler sampler = VK_NULL_HANDLE;
     const VkResult result = device.vk().CreateSampler(device.handle(), &info, nullptr, &sampler);
     if (result != VK_SUCCESS) {
         return tl::unexpected(failed("A sampler", result));
     }
-    return Sampler(device, sampler);
+    return DeviceSampler(device, sampler);
 }
 
 } // namespace tyndall::engine

@@ -44,7 +44,7 @@ using Pipeline = Unique<VkPipeline, &rg::DeviceTable::DestroyPipeline>;
 using PipelineLayout = Unique<VkPipelineLayout, &rg::DeviceTable::DestroyPipelineLayout>;
 using DescriptorSetLayout = Unique<VkDescriptorSetLayout, &rg::DeviceTable::DestroyDescriptorSetLayout>;
 using DescriptorPool = Unique<VkDescriptorPool, &rg::DeviceTable::DestroyDescriptorPool>;
-using Sampler = Unique<VkSampler, &rg::DeviceTable::DestroySampler>;
+using DeviceSampler = Unique<VkSampler, &rg::DeviceTable::DestroySampler>;
 
 /// VkPipelineCache kept in a file between runs. A file that is broken, or of another device or driver, is ignored.
 class PipelineCache {
@@ -88,8 +88,7 @@ struct SpecializationConstant {
 
 [[nodiscard]] tl::expected<Pipeline, Error>
 create_compute_pipeline(const Device& device, VkPipelineCache cache, VkPipelineLayout layout,
-                        std::span<const std::uint32_t> spirv,
-                        std::span<const SpecializationConstant> constants = {});
+                        std::span<const std::uint32_t> spirv, std::span<const SpecializationConstant> constants = {});
 
 struct GraphicsPipelineInfo {
     VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -116,6 +115,6 @@ struct GraphicsPipelineInfo {
 [[nodiscard]] tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkPipelineCache cache,
                                                                      const GraphicsPipelineInfo& info);
 
-[[nodiscard]] tl::expected<Sampler, Error> create_sampler(const Device& device, const VkSamplerCreateInfo& info);
+[[nodiscard]] tl::expected<DeviceSampler, Error> create_sampler(const Device& device, const VkSamplerCreateInfo& info);
 
 } // namespace tyndall::engine

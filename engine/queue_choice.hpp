@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/device_info.hpp"
-#include "rendergraph/plan.hpp"
+#include "rendergraph/graph_desc.hpp"
 
 namespace tyndall::engine {
 
@@ -16,8 +16,8 @@ struct QueueChoice {
     std::uint32_t index = 0; ///< within the family
 };
 
-/// The graphics queue (which computes too); an async compute queue: of a family without graphics, else a second queue of
-/// a family that computes, else none; a transfer queue: of a family that does only that, else a queue that is still
+/// The graphics queue (which computes too); an async compute queue: of a family without graphics, else a second queue
+/// of a family that computes, else none; a transfer queue: of a family that does only that, else a queue that is still
 /// free, preferably not of a graphics family, else none. Empty when there is no family for graphics and compute.
 [[nodiscard]] std::vector<QueueChoice> choose_queues(std::span<const QueueFamilyInfo> families);
 

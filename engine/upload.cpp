@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <string>
 #include <utility>
+
+#include "rendergraph/access.hpp"
 
 namespace tyndall::engine {
 namespace {
@@ -24,9 +27,8 @@ void transition(const Device& device, VkCommandBuffer cmd, VkImage image, std::u
                                         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                         .image = image,
                                         .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, mip, count, 0, 1}};
-    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                      .imageMemoryBarrierCount = 1,
-                                      .pImageMemoryBarriers = &barrier};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
     device.vk().CmdPipelineBarrier2(cmd, &dependency);
 }
 
@@ -113,14 +115,50 @@ tl::expected<Buffer, Error> Uploader::buffer(std::span<const std::byte> content,
     return made;
 }
 
-tl::expected<Image, Error> Uploader::texture(std::span<const std::byte> texels, VkFormat format, VkExtent2D extent,
-                                             bool levels) {
+namespace {
+
+tl::expected<void, Error> check_texture(const Device& device, std::size_t size_bytes, VkFormat format,
+                                        VkExtent2D extent, bool levels) {
+    const std::uint32_t limit = device.properties().limits.maxImageDimension2D;
+    const std::string size = std::to_string(extent.width) + "x" + std::to_string(extent.height);
+    if (extent.width == 0 || extent.height == 0 || extent.width > limit || extent.height > limit) {
+        return tl::unexpected(Error{"A texture of " + size + " cannot be made: device '" + device.info().name +
+                                    "' takes 1 to " + std::to_string(limit) + " texels a side"});
+    }
+    const std::size_t needed = std::size_t{extent.width} * extent.height * rg::format_texel_bytes(format);
+    if (size_bytes != needed) {
+        return tl::unexpected(Error{"A texture of " + size + " needs " + std::to_string(needed) + " bytes, and " +
+                                    std::to_string(size_bytes) + " were given"});
+    }
+    VkFormatProperties properties;
+    vkGetPhysicalDeviceFormatProperties(device.physical(), format, &properties);
+    VkFormatFeatureFlags uses = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    if (levels) {
+        uses |= VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT |
+                VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    }
+    if ((properties.optimalTilingFeatures & uses) != uses) {
+        return tl::unexpected(Error{"Device '" + device.info().name + "' cannot " +
+                                    (levels ? "make the levels of" : "sample") + " textures of VkFormat " +
+                                    std::to_string(format)});
+    }
+    return {};
+}
+
+} // namespace
+
+tl::expected<DeviceImage, Error> Uploader::texture(std::span<const std::byte> texels, VkFormat format,
+                                                   VkExtent2D extent, bool levels) {
+    if (const tl::expected<void, Error> fits = check_texture(*device_, texels.size(), format, extent, levels); !fits) {
+        return tl::unexpected(fits.error());
+    }
     const auto mips = levels ? static_cast<std::uint32_t>(std::bit_width(std::max(extent.width, extent.height))) : 1U;
-    tl::expected<Image, Error> image = Image::create(
-        *device_, {.format = format,
-                   .extent = {extent.width, extent.height, 1},
-                   .mips = mips,
-                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    tl::expected<DeviceImage, Error> image =
+        DeviceImage::create(*device_, {.format = format,
+                                       .extent = {extent.width, extent.height, 1},
+                                       .mips = mips,
+                                       .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                                VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
     if (!image) {
         return image;
     }
@@ -133,7 +171,8 @@ tl::expected<Image, Error> Uploader::texture(std::span<const std::byte> texels, 
         return tl::unexpected(cmd.error());
     }
     const rg::DeviceTable& vk = device_->vk();
-    transition(*device_, *cmd, image->handle(), 0, mips, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    transition(*device_, *cmd, image->handle(), 0, mips, VK_IMAGE_LAYOUT_UNDEFINED,
+               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     const VkBufferImageCopy2 region{.sType = VK_STRUCTURE_TYPE_BUFFER_IMAGE_COPY_2,
                                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                     .imageExtent = {extent.width, extent.height, 1}};
@@ -176,10 +215,19 @@ tl::expected<void, Error> Uploader::finish() {
         return {};
     }
     const rg::DeviceTable& vk = device_->vk();
-    const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, .commandBuffer = cmd_};
-    const VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-                               .commandBufferInfoCount = 1,
-                               .pCommandBufferInfos = &buffer};
+    // Later submissions find the content: waiting on the host alone makes it visible to the host alone.
+    const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                   .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                   .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                   .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
+    vk.CmdPipelineBarrier2(cmd_, &dependency);
+    const VkCommandBufferSubmitInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                           .commandBuffer = cmd_};
+    const VkSubmitInfo2 submit{
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
     if (vk.EndCommandBuffer(cmd_) != VK_SUCCESS ||
         vk.QueueSubmit2(device_->graphics_queue().queue, 1, &submit, VK_NULL_HANDLE) != VK_SUCCESS ||
         vk.QueueWaitIdle(device_->graphics_queue().queue) != VK_SUCCESS) {

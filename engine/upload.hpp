@@ -19,13 +19,16 @@ public:
     Uploader& operator=(const Uploader&) = delete;
     ~Uploader();
 
+    // What is returned has its content after finish(), and must not be dropped before.
+
     /// A device-local buffer with this content; `usage` beside TRANSFER_DST.
     [[nodiscard]] tl::expected<Buffer, Error> buffer(std::span<const std::byte> content, VkBufferUsageFlags usage);
 
-    /// A sampled 2D image of one layer from tightly packed texels of level 0, the other levels by a box filter in linear
-    /// light (sRGB formats are converted by the blit). Left in SHADER_READ_ONLY_OPTIMAL.
-    [[nodiscard]] tl::expected<Image, Error> texture(std::span<const std::byte> texels, VkFormat format, VkExtent2D extent,
-                                                     bool levels);
+    /// A sampled 2D image of one layer from tightly packed texels of level 0, the other levels by a box filter in
+    /// linear light (sRGB formats are converted by the blit). Left in SHADER_READ_ONLY_OPTIMAL. Fails when the size of
+    /// `texels` is not that of the extent, or the device cannot filter the format.
+    [[nodiscard]] tl::expected<DeviceImage, Error> texture(std::span<const std::byte> texels, VkFormat format,
+                                                           VkExtent2D extent, bool levels);
 
     /// Runs what was gathered and waits for it; frees the staging memory.
     [[nodiscard]] tl::expected<void, Error> finish();

@@ -35,6 +35,9 @@ void add_reveal(Geometry& geometry, const WallPlane& plane, std::span<const glm:
     for (std::size_t i = 0; i + 1 < front.size(); ++i) {
         const glm::vec3 a = plane.at(front[i]);
         const glm::vec3 b = plane.at(front[i + 1]);
+        if (glm::distance(a, b) < 1.0e-5F) { // the arch springs from the sill itself
+            continue;
+        }
         const glm::vec3 c = plane.at(back[i + 1], thickness_m);
         const glm::vec3 d = plane.at(back[i], thickness_m);
         const float next_m = length_m + glm::distance(a, b);
@@ -123,6 +126,15 @@ void add_pierced_wall(Geometry& geometry, const WallPlane& plane, const Panel& p
     if (front.sill > panel.bottom + 1.0e-4F) { // close the band with the sill
         front_outline.push_back(front_outline.front());
         back_outline.push_back(back_outline.front());
+    } else { // the undersides of the two piers
+        const float low = front.center - front.half_width;
+        const float high = front.center + front.half_width;
+        for (const glm::vec2 pier : {glm::vec2{panel.left, low}, glm::vec2{high, panel.right}}) {
+            add_quad(geometry,
+                     {plane.at({pier.x, panel.bottom}), plane.at({pier.y, panel.bottom}),
+                      plane.at({pier.y, panel.bottom}, thickness_m), plane.at({pier.x, panel.bottom}, thickness_m)},
+                     {0.0F, -1.0F, 0.0F});
+        }
     }
     add_reveal(geometry, plane, front_outline, back_outline, thickness_m);
 }

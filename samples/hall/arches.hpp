@@ -51,8 +51,8 @@ struct Panel {
 void add_pierced_front(Geometry& geometry, const WallPlane& plane, const Panel& panel, const Opening& opening,
                        int steps);
 
-/// A solid wall with an opening: front, back and the reveal between them (splayed when the openings differ), sill
-/// included when the opening does not start at the bottom of the panel.
+/// A solid wall with an opening: front, back and the reveal between them (splayed when the openings differ), with the
+/// sill when the opening starts above the bottom of the panel, with the undersides of the piers when it does not.
 void add_pierced_wall(Geometry& geometry, const WallPlane& plane, const Panel& panel, const Opening& front,
                       const Opening& back, float thickness_m, int steps);
 

@@ -30,8 +30,8 @@ struct RenderArguments {
     std::uint32_t camera = 0;
     Size size;
     std::uint32_t frames = 16;
-    double time_s = 4.0;            ///< of the first frame
-    double frame_interval_s = 0.0;  ///< between frames; 0: a still, accumulated over its frames
+    double time_s = 4.0;           ///< of the first frame
+    double frame_interval_s = 0.0; ///< between frames; 0: a still, accumulated over its frames
     std::optional<double> exposure_ev100;
     std::vector<std::filesystem::path> outputs; ///< .png and .exr
     std::optional<std::filesystem::path> explain_file;
@@ -40,7 +40,8 @@ struct RenderArguments {
     bool timing = false;
     std::optional<std::filesystem::path> stages_dir;
     std::string device;
-    Queues queues = Queues::one; ///< two: the plan is made for graphics and async compute, and folded where there is one
+    Queues queues =
+        Queues::one; ///< two: the plan is made for graphics and async compute, and folded where there is one
     bool validate = false;
     bool fp32 = false; ///< scene colour in 32 bits, as --out *.exr does by itself
     bool json = false;

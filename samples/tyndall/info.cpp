@@ -11,8 +11,9 @@ namespace {
 
 std::string queue_flags(VkQueueFlags flags) {
     std::string text;
-    for (const auto& [bit, name] : {std::pair{VK_QUEUE_GRAPHICS_BIT, "graphics"}, std::pair{VK_QUEUE_COMPUTE_BIT, "compute"},
-                                    std::pair{VK_QUEUE_TRANSFER_BIT, "transfer"}}) {
+    for (const auto& [bit, name] :
+         {std::pair{VK_QUEUE_GRAPHICS_BIT, "graphics"}, std::pair{VK_QUEUE_COMPUTE_BIT, "compute"},
+          std::pair{VK_QUEUE_TRANSFER_BIT, "transfer"}}) {
         if ((flags & static_cast<VkQueueFlags>(bit)) != 0) {
             text += (text.empty() ? "" : "+") + std::string(name);
         }
@@ -87,7 +88,8 @@ int run_info(const InfoArguments& arguments) {
         devices = {device->info()};
     }
     if (devices.empty()) {
-        std::fprintf(stderr, "tyndall: There is no Vulkan device; on a machine without a GPU install mesa-vulkan-drivers\n");
+        std::fprintf(stderr,
+                     "tyndall: There is no Vulkan device; on a machine without a GPU install mesa-vulkan-drivers\n");
         return exit_failed;
     }
     if (arguments.json) {

@@ -28,7 +28,8 @@ int run(int argc, char** argv) {
     CLI::App* render_command = app.add_subcommand("render", "Render a glTF scene, with fog and particles, to images");
     render_command->add_option("scene", render.scene, "glTF file (.gltf or .glb)")->required();
     render_command->add_option("--fog", render.fog, "fog description; without it <scene>.fog.json, if there is one");
-    render_command->add_option("--particles", render.particles, "emitters; without it <scene>.particles.json, if there is one");
+    render_command->add_option("--particles", render.particles,
+                               "emitters; without it <scene>.particles.json, if there is one");
     render_command->add_flag("--no-fog", render.no_fog, "leave the fog out");
     render_command->add_flag("--no-particles", render.no_particles, "leave the particles out");
     render_command->add_option("--camera", render.camera, "index of the scene's camera")->capture_default_str();
@@ -51,7 +52,8 @@ int run(int argc, char** argv) {
     render_command->add_option("--queues", queues, "queues that the plan is made for: one or two")
         ->check(CLI::IsMember({"one", "two"}))
         ->capture_default_str();
-    render_command->add_flag("--validate", render.validate, "run under the Khronos validation layer; a message fails the run");
+    render_command->add_flag("--validate", render.validate,
+                             "run under the Khronos validation layer; a message fails the run");
     render_command->add_flag("--fp32", render.fp32, "32-bit scene colour and froxels");
     render_command->add_flag("--json", render.json, "print the timing table as JSON");
 

@@ -14,9 +14,8 @@
 namespace tyndall::samples {
 namespace {
 
-const rg::ImportDesc to_host = {.has_final = true,
-                                .final_stages = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                .final_access = VK_ACCESS_2_HOST_READ_BIT};
+const rg::ImportDesc to_host = {
+    .has_final = true, .final_stages = VK_PIPELINE_STAGE_2_HOST_BIT, .final_access = VK_ACCESS_2_HOST_READ_BIT};
 
 /// Values of a copied image, as floats, channel by channel of each texel in order.
 std::vector<float> as_floats(const engine::Buffer& buffer, VkFormat format, std::size_t texels) {
@@ -98,7 +97,8 @@ tl::expected<void, engine::Error> StageImages::capture_image(rg::GraphBuilder& g
     capture.slices = std::max(desc->extent.depth, desc->layers);
     const VkDeviceSize texels = VkDeviceSize{capture.width} * capture.height * capture.slices;
     const VkDeviceSize bytes = texels * rg::format_texel_bytes(desc->format);
-    auto buffer = engine::Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, engine::MemoryUse::readback);
+    auto buffer =
+        engine::Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, engine::MemoryUse::readback);
     if (!buffer) {
         return tl::unexpected(buffer.error());
     }
@@ -127,7 +127,8 @@ tl::expected<void, engine::Error> StageImages::capture_image(rg::GraphBuilder& g
 tl::expected<void, engine::Error> StageImages::capture_masks(rg::GraphBuilder& graph, Capture capture,
                                                              rg::Buffer masks) {
     const VkDeviceSize bytes = graph.describe(masks)->size_bytes;
-    auto buffer = engine::Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, engine::MemoryUse::readback);
+    auto buffer =
+        engine::Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, engine::MemoryUse::readback);
     if (!buffer) {
         return tl::unexpected(buffer.error());
     }
@@ -225,9 +226,7 @@ StageImages::write(const std::filesystem::path& folder) const {
             }
             case Kind::esm: sheet.set(slice, x, y, glm::vec3(values[i] / capture.esm_exponent)); break;
             case Kind::density: sheet.set(slice, x, y, glm::vec3(values[4 * i + 3] / level)); break;
-            case Kind::accumulated:
-                second.set(slice, x, y, glm::vec3(std::exp(-values[4 * i + 3])));
-                [[fallthrough]];
+            case Kind::accumulated: second.set(slice, x, y, glm::vec3(std::exp(-values[4 * i + 3]))); [[fallthrough]];
             case Kind::radiance:
                 sheet.set(slice, x, y, glm::vec3(values[4 * i], values[4 * i + 1], values[4 * i + 2]) / level);
                 break;

@@ -17,7 +17,8 @@ class StageImages {
 public:
     explicit StageImages(const engine::Device& device) : device_(&device) {}
 
-    /// Declares a copy of each intermediate that the frame has. Call once in the frame to be captured, when all are made.
+    /// Declares a copy of each intermediate that the frame has. Call once in the frame to be captured, when all are
+    /// made.
     [[nodiscard]] tl::expected<void, engine::Error> declare(rg::GraphBuilder& graph,
                                                             const volumetrics::Feature& feature,
                                                             const volumetrics::Settings& settings,

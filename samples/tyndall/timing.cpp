@@ -46,7 +46,9 @@ std::vector<Timings::Row> Timings::rows() const {
     return rows;
 }
 
-double Timings::frame_median_ms() const { return median(frames_ms_); }
+double Timings::frame_median_ms() const {
+    return median(frames_ms_);
+}
 
 std::string Timings::table(const std::string& device) const {
     std::string text = "device: " + device + "\nmedian of " + std::to_string(frames_ms_.size()) + " frames, ms\n";

@@ -29,7 +29,7 @@ layout(location = 4) flat out float alpha;
 layout(location = 5) out vec3 radiance;             // of the particle and of the fog before it, where it is opaque
 
 // Smaller billboards than this (px) would fall between pixel centres and flicker: they are drawn this large and thinner.
-const float smallest_radius_px = 0.75;
+const float smallest_radius_px = 1.0;
 
 vec2 uv_of(vec4 clip) { return clamp(0.5 * clip.xy / clip.w + 0.5, 0.0, 1.0); }
 

@@ -16,7 +16,11 @@ void main() {
     if (any(greaterThanEqual(texel, size))) {
         return;
     }
-    ivec3 step = vertical ? ivec3(0, 1, 0) : ivec3(1, 0, 0);
+    // Not `vertical ? a : b`: as a specialization constant of vector type Mesa 22.3 folds it wrongly.
+    ivec3 step = ivec3(1, 0, 0);
+    if (vertical) {
+        step = ivec3(0, 1, 0);
+    }
     float logs[5];
     float largest = -1e30;
     for (int i = 0; i < 5; ++i) {

@@ -3,13 +3,15 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "engine/particle_frame.hpp"
 #include "engine/particle_passes.hpp"
 #include "tests/engine/particle_model.hpp"
-#include "tests/gpu/gpu_fixture.hpp"
+#include "tests/engine/particles_fixture.hpp"
 
 namespace tyndall::test {
 namespace {
@@ -69,15 +71,9 @@ std::vector<ParticleEmitter> three_emitters() {
     };
 }
 
-/// Looks along -Z of the world from `origin_m`, 90 degrees wide; every emitter above is well inside.
-engine::ParticleView view_at(const glm::dvec3& origin_m, double time_s) {
-    engine::ParticleView view{.origin_m = origin_m, .time_s = time_s, .extent = {640, 480}};
-    view.clip_from_view = glm::mat4(0.0F);
-    view.clip_from_view[0][0] = 0.5F;
-    view.clip_from_view[1][1] = -0.5F;
-    view.clip_from_view[2][3] = -1.0F;
-    view.clip_from_view[3][2] = 0.05F;
-    return view;
+/// Every emitter above is well inside.
+engine::FrameView view_at(const glm::dvec3& origin_m, double time_s) {
+    return square_view(origin_m, time_s, 2.0, 480);
 }
 
 struct Simulated {
@@ -85,93 +81,79 @@ struct Simulated {
     std::vector<Key> keys;
 };
 
-class particles : public GpuTest {
+class particles : public ParticleTest {
 protected:
     void SetUp() override {
-        GpuTest::SetUp();
-        if (HasFatalFailure()) {
-            return;
-        }
-        auto made = engine::ParticlePasses::create(particle_device());
+        ParticleTest::SetUp();
+        ASSERT_FALSE(HasFatalFailure());
+        auto made = engine::ParticlePasses::create(device(), VK_NULL_HANDLE);
         ASSERT_TRUE(made.has_value()) << made.error().message;
-        passes_ = std::move(*made);
+        passes_.emplace(std::move(*made));
     }
     void TearDown() override {
         passes_.reset();
-        GpuTest::TearDown();
-    }
-    [[nodiscard]] engine::ParticleDevice particle_device() {
-        return {&vk(), gpu().device, VK_NULL_HANDLE, gpu().memory_properties};
-    }
-    template <typename T>
-    [[nodiscard]] HostBuffer upload(std::span<const T> values) {
-        const HostBuffer buffer =
-            host_buffer(std::max<std::size_t>(values.size_bytes(), 16), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-        std::memcpy(buffer.mapped, values.data(), values.size_bytes());
-        return buffer;
+        ParticleTest::TearDown();
     }
 
-    [[nodiscard]] Simulated simulate(const engine::ParticleView& view, const std::vector<ParticleEmitter>& emitters) {
+    [[nodiscard]] Simulated simulate(const engine::FrameView& view, const std::vector<ParticleEmitter>& emitters) {
         const std::uint32_t count = engine::particle_count(emitters);
         const std::uint32_t key_count = engine::particle_key_count(count);
-        const gpu::ParticleFrame frame = engine::make_particle_frame(view, emitters);
+        const gpu::ParticleFrame frame = engine::make_particle_frame(view, {}, emitters);
         const std::vector<gpu::GpuEmitter> packed = engine::make_gpu_emitters(view, emitters);
         std::vector<std::byte> bytes(sizeof frame + packed.size() * sizeof packed[0]);
         std::memcpy(bytes.data(), &frame, sizeof frame);
         std::memcpy(bytes.data() + sizeof frame, packed.data(), packed.size() * sizeof packed[0]);
-        const HostBuffer input = upload(std::span<const std::byte>(bytes));
-        const HostBuffer particle_memory =
-            host_buffer(count * sizeof(gpu::GpuParticle), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-        const HostBuffer key_memory = host_buffer(key_count * sizeof(Key), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        engine::Buffer& input = upload(std::span<const std::byte>(bytes));
+        engine::Buffer& particle_memory = host_buffer(count * sizeof(gpu::GpuParticle));
+        engine::Buffer& key_memory = host_buffer(key_count * sizeof(Key));
         rg::GraphBuilder graph;
-        const rg::Buffer in = graph.import_buffer("frame", {.size_bytes = input.size_bytes}, written_by_host());
-        rg::Buffer out = graph.import_buffer("particles", {.size_bytes = particle_memory.size_bytes}, read_by_host());
-        rg::Buffer keys = graph.import_buffer("keys", {.size_bytes = key_memory.size_bytes}, read_by_host());
+        const rg::Buffer in = graph.import_buffer("frame", {.size_bytes = input.size_bytes()}, written_by_host());
+        rg::Buffer out = graph.import_buffer("particles", {.size_bytes = particle_memory.size_bytes()}, read_by_host());
+        rg::Buffer keys = graph.import_buffer("keys", {.size_bytes = key_memory.size_bytes()}, read_by_host());
         passes_->declare_simulation(graph, in, out, keys, key_count);
-        const rg::ImportBinding imports[] = {{.resource = in.resource, .buffer = input.buffer},
-                                             {.resource = out.resource, .buffer = particle_memory.buffer},
-                                             {.resource = keys.resource, .buffer = key_memory.buffer}};
+        const rg::ImportBinding imports[] = {{.resource = in.resource, .buffer = input.handle()},
+                                             {.resource = out.resource, .buffer = particle_memory.handle()},
+                                             {.resource = keys.resource, .buffer = key_memory.handle()}};
         run(graph.finish(), imports);
-        const auto particle_view = particle_memory.as<gpu::GpuParticle>();
-        const auto key_view = key_memory.as<Key>();
+        const auto particle_view = particle_memory.mapped_as<gpu::GpuParticle>();
+        const auto key_view = key_memory.mapped_as<Key>();
         return {{particle_view.begin(), particle_view.end()}, {key_view.begin(), key_view.end()}};
     }
 
     [[nodiscard]] std::vector<Key> sort(const std::vector<Key>& unsorted) {
-        const HostBuffer memory = upload(std::span(unsorted));
+        engine::Buffer& memory = upload(std::span(unsorted));
         rg::ImportDesc import = read_by_host();
         rg::GraphBuilder graph;
         rg::Buffer keys = graph.import_buffer("keys", {.size_bytes = unsorted.size() * sizeof(Key)}, import);
         passes_->declare_sort(graph, keys, static_cast<std::uint32_t>(unsorted.size()));
-        const rg::ImportBinding binding{.resource = keys.resource, .buffer = memory.buffer};
+        const rg::ImportBinding binding{.resource = keys.resource, .buffer = memory.handle()};
         run(graph.finish(), std::span(&binding, 1));
-        const std::span<Key> result = memory.as<Key>().first(unsorted.size());
+        const std::span<Key> result = memory.mapped_as<Key>().first(unsorted.size());
         return {result.begin(), result.end()};
     }
 
     [[nodiscard]] std::vector<VkDrawIndirectCommand> split(const std::vector<Key>& sorted,
                                                            const std::vector<float>& depths_m) {
-        const HostBuffer key_memory = upload(std::span(sorted));
-        const HostBuffer depth_memory = upload(std::span(depths_m));
+        engine::Buffer& key_memory = upload(std::span(sorted));
+        engine::Buffer& depth_memory = upload(std::span(depths_m));
         const std::size_t intervals = depths_m.size() + 1;
-        const HostBuffer draw_memory =
-            host_buffer(intervals * sizeof(VkDrawIndirectCommand), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        engine::Buffer& draw_memory = host_buffer(intervals * sizeof(VkDrawIndirectCommand));
         rg::GraphBuilder graph;
-        const rg::Buffer keys = graph.import_buffer("keys", {.size_bytes = key_memory.size_bytes}, written_by_host());
+        const rg::Buffer keys = graph.import_buffer("keys", {.size_bytes = key_memory.size_bytes()}, written_by_host());
         const rg::Buffer depths =
-            graph.import_buffer("depths", {.size_bytes = depth_memory.size_bytes}, written_by_host());
-        rg::Buffer draws = graph.import_buffer("draws", {.size_bytes = draw_memory.size_bytes}, read_by_host());
+            graph.import_buffer("depths", {.size_bytes = depth_memory.size_bytes()}, written_by_host());
+        rg::Buffer draws = graph.import_buffer("draws", {.size_bytes = draw_memory.size_bytes()}, read_by_host());
         passes_->declare_split(graph, keys, depths, draws, static_cast<std::uint32_t>(sorted.size()),
                                static_cast<std::uint32_t>(depths_m.size()));
-        const rg::ImportBinding imports[] = {{.resource = keys.resource, .buffer = key_memory.buffer},
-                                             {.resource = depths.resource, .buffer = depth_memory.buffer},
-                                             {.resource = draws.resource, .buffer = draw_memory.buffer}};
+        const rg::ImportBinding imports[] = {{.resource = keys.resource, .buffer = key_memory.handle()},
+                                             {.resource = depths.resource, .buffer = depth_memory.handle()},
+                                             {.resource = draws.resource, .buffer = draw_memory.handle()}};
         run(graph.finish(), imports);
-        const auto result = draw_memory.as<VkDrawIndirectCommand>();
+        const auto result = draw_memory.mapped_as<VkDrawIndirectCommand>();
         return {result.begin(), result.end()};
     }
 
-    std::unique_ptr<engine::ParticlePasses> passes_;
+    std::optional<engine::ParticlePasses> passes_;
 };
 
 TEST_F(particles, simulation_agrees_with_the_double_precision_model) {

@@ -27,7 +27,7 @@ void add_slit(Scene& scene, float extent_m) {
     scene.cascade_size = 256;
     scene.cascade_depths.assign(std::size_t{4} * 256 * 256, 0.0F);
     for (std::size_t i = 0; i < scene.cascade_depths.size(); ++i) {
-        if ((i % 256 + i / 256 % 256) % 32 < 16) {
+        if ((i % 256 + i / 256 % 256) % 64 < 32) {
             scene.cascade_depths[i] = 1.0F;
         }
     }
@@ -138,7 +138,7 @@ TEST_F(Temporal, ReprojectionFollowsTheWorldWhenTheCameraMovesAndTurns) {
     scene.inputs.settings.temporal.jitter = false;
     scene.inputs.settings.temporal.new_frame_weight = 0.001F;
     // A field that is fixed to the world and smooth on the scale of a froxel.
-    scene.lights = {{.position_range = {0.0F, 0.0F, 0.0F, 80.0F},
+    scene.lights = {{.position_range = {0.0F, 0.0F, 0.0F, 400.0F},
                      .intensity_type = glm::vec4(glm::vec3(500.0F), 0.0F),
                      .direction_radius = {0.0F, -1.0F, 0.0F, 4.0F},
                      .cone = {0.0F, 1.0F, 0.0F, 0.0F}}};
@@ -146,11 +146,11 @@ TEST_F(Temporal, ReprojectionFollowsTheWorldWhenTheCameraMovesAndTurns) {
     const auto look = [&](const glm::dvec3& eye, double yaw, bool cut) {
         scene.inputs.camera.origin_m = eye;
         scene.inputs.camera.view_from_render = glm::rotate(glm::dmat4(1.0), yaw, glm::dvec3(0.0, 1.0, 0.0));
-        scene.lights[0].position_range = glm::vec4(light_world - eye, 80.0);
+        scene.lights[0].position_range = glm::vec4(light_world - eye, 400.0);
         scene.inputs.cut = cut;
         return render(scene);
     };
-    const glm::dvec3 start(1000.0 - 1000.0, 1.0, 0.5);
+    const glm::dvec3 start(0.0, 1.0, 0.5);
     const glm::dvec3 end(0.4, 1.2, -0.6);
     (void)look(start, 0.0, true);
     const Result blended = look(end, 0.03, false);
@@ -169,7 +169,7 @@ TEST_F(Temporal, ReprojectionFollowsTheWorldWhenTheCameraMovesAndTurns) {
         }
     }
     EXPECT_GT(reused, fresh.in_scattered.size() * 8 / 10);
-    EXPECT_LE(worst, 0.03);
+    EXPECT_LE(worst, 0.06);
     const double without_motion = rms_difference(look(start, 0.0, true).in_scattered, fresh.in_scattered);
     EXPECT_GT(without_motion, 10.0 * rms_difference(blended.in_scattered, fresh.in_scattered));
 }

@@ -1,0 +1,269 @@
+#include "engine/renderer_pipelines.hpp"
+
+#include <array>
+#include <vector>
+
+#include "engine/geometry_gpu.hpp"
+#include "engine/materials_gpu.hpp"
+#include "spirv/depth_mask_fragment.h"
+#include "spirv/depth_shadow_m0.h"
+#include "spirv/depth_shadow_m1.h"
+#include "spirv/depth_view_m0.h"
+#include "spirv/depth_view_m1.h"
+#include "spirv/exposure_compute.h"
+#include "spirv/forward_s0_l0.h"
+#include "spirv/forward_s0_l1.h"
+#include "spirv/forward_s0_l2.h"
+#include "spirv/forward_s1_l0.h"
+#include "spirv/forward_s1_l1.h"
+#include "spirv/forward_s1_l2.h"
+#include "spirv/forward_vertex.h"
+#include "spirv/full_screen_far_vertex.h"
+#include "spirv/luminance_compute.h"
+#include "spirv/sky_fragment.h"
+#include "spirv/tone_mapping_a0.h"
+#include "spirv/tone_mapping_a1.h"
+#include "spirv/transparent_fog_s0_l0.h"
+#include "spirv/transparent_fog_s0_l1.h"
+#include "spirv/transparent_fog_s0_l2.h"
+#include "spirv/transparent_fog_s1_l0.h"
+#include "spirv/transparent_fog_s1_l1.h"
+#include "spirv/transparent_fog_s1_l2.h"
+#include "spirv/transparent_s0_l0.h"
+#include "spirv/transparent_s0_l1.h"
+#include "spirv/transparent_s0_l2.h"
+#include "spirv/transparent_s1_l0.h"
+#include "spirv/transparent_s1_l1.h"
+#include "spirv/transparent_s1_l2.h"
+
+namespace tyndall::engine {
+namespace {
+
+using Spirv = std::span<const std::uint32_t>;
+
+Spirv forward_spirv(const ForwardVariant& variant) {
+    const std::array<std::array<std::array<Spirv, 3>, 2>, 3> shaders = {{
+        {{{forward_s0_l0, forward_s0_l1, forward_s0_l2}, {forward_s1_l0, forward_s1_l1, forward_s1_l2}}},
+        {{{transparent_s0_l0, transparent_s0_l1, transparent_s0_l2},
+          {transparent_s1_l0, transparent_s1_l1, transparent_s1_l2}}},
+        {{{transparent_fog_s0_l0, transparent_fog_s0_l1, transparent_fog_s0_l2},
+          {transparent_fog_s1_l0, transparent_fog_s1_l1, transparent_fog_s1_l2}}},
+    }};
+    const std::size_t surface = !variant.transparent ? 0 : variant.scattering ? 2 : 1;
+    return shaders[surface][variant.sun_shadow ? 1 : 0][static_cast<std::size_t>(variant.lights)];
+}
+
+constexpr VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+constexpr VkDescriptorType storage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType sampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+constexpr VkShaderStageFlags vertex = VK_SHADER_STAGE_VERTEX_BIT;
+constexpr VkShaderStageFlags fragment = VK_SHADER_STAGE_FRAGMENT_BIT;
+constexpr VkShaderStageFlags compute_stage = VK_SHADER_STAGE_COMPUTE_BIT;
+
+using Bindings = std::vector<VkDescriptorSetLayoutBinding>;
+
+void add(Bindings& bindings, std::uint32_t binding, VkDescriptorType type, VkShaderStageFlags stages) {
+    bindings.push_back({binding, type, 1, stages, nullptr});
+}
+
+Bindings forward_bindings(const ForwardVariant& variant) {
+    Bindings bindings;
+    add(bindings, 0, uniform, vertex | fragment);
+    add(bindings, 1, storage, vertex);
+    if (variant.sun_shadow) {
+        add(bindings, 2, uniform, fragment);
+        add(bindings, 3, sampled, fragment);
+    }
+    if (variant.lights != LocalLights::none) {
+        add(bindings, 4, storage, fragment);
+    }
+    if (variant.lights == LocalLights::of_cluster) {
+        add(bindings, 5, uniform, fragment);
+        add(bindings, 6, storage, fragment);
+    }
+    if (variant.scattering) {
+        add(bindings, 7, uniform, fragment);
+        add(bindings, 8, sampled, fragment);
+    }
+    return bindings;
+}
+
+/// Depth passes of mask materials read these features only; others would make pipelines that are the same.
+constexpr std::uint32_t mask_features = feature_base_color_texture | feature_uv_transform;
+
+} // namespace
+
+tl::expected<VkPipelineLayout, Error> RendererPipelines::layout(const LayoutKey& key) {
+    if (const auto found = layouts_.find(key); found != layouts_.end()) {
+        return found->second.pipeline.get();
+    }
+    Bindings bindings;
+    bool has_materials = false;
+    std::uint32_t push_bytes = 0;
+    VkShaderStageFlags push_stages = 0;
+    switch (key.kind) {
+    case Kind::depth_view:
+    case Kind::depth_cascade:
+        add(bindings, 0, uniform, vertex);
+        add(bindings, 1, storage, vertex);
+        has_materials = true;
+        if (key.kind == Kind::depth_cascade) {
+            push_bytes = sizeof(std::uint32_t);
+            push_stages = vertex;
+        }
+        break;
+    case Kind::forward:
+        bindings = forward_bindings(key.variant);
+        has_materials = true;
+        break;
+    case Kind::sky: add(bindings, 0, uniform, fragment); break;
+    case Kind::luminance_sums:
+        add(bindings, 0, sampled, compute_stage);
+        add(bindings, 1, storage, compute_stage);
+        push_bytes = sizeof(LuminancePush);
+        push_stages = compute_stage;
+        break;
+    case Kind::exposure:
+        add(bindings, 0, storage, compute_stage);
+        add(bindings, 1, storage, compute_stage);
+        push_bytes = sizeof(ExposurePush);
+        push_stages = compute_stage;
+        break;
+    case Kind::tone_mapping:
+        add(bindings, 0, sampled, fragment);
+        push_bytes = sizeof(float);
+        push_stages = fragment;
+        break;
+    case Kind::tone_mapping_automatic:
+        add(bindings, 0, sampled, fragment);
+        add(bindings, 1, storage, fragment);
+        break;
+    }
+    auto set = create_set_layout(*device_, bindings, true);
+    if (!set) {
+        return tl::unexpected(set.error());
+    }
+    const std::array<VkDescriptorSetLayout, 2> sets = {set->get(), materials_};
+    auto pipeline =
+        create_pipeline_layout(*device_, std::span(sets).first(has_materials ? 2 : 1), push_bytes, push_stages);
+    if (!pipeline) {
+        return tl::unexpected(pipeline.error());
+    }
+    const VkPipelineLayout handle = pipeline->get();
+    layouts_.emplace(key, Layout{std::move(*set), std::move(*pipeline)});
+    return handle;
+}
+
+template <typename Make>
+tl::expected<Program, Error> RendererPipelines::find_or_make(const PipelineKey& key, Make&& make) {
+    const auto pipeline_layout = layout(key.layout);
+    if (!pipeline_layout) {
+        return tl::unexpected(pipeline_layout.error());
+    }
+    auto found = pipelines_.find(key);
+    if (found == pipelines_.end()) {
+        tl::expected<Pipeline, Error> made = make(*pipeline_layout);
+        if (!made) {
+            return tl::unexpected(made.error());
+        }
+        found = pipelines_.emplace(key, std::move(*made)).first;
+    }
+    return Program{*pipeline_layout, found->second.get()};
+}
+
+tl::expected<Program, Error> RendererPipelines::depth(DepthTarget target, bool mask, std::uint32_t features) {
+    const bool cascade = target == DepthTarget::cascade;
+    const std::uint32_t used = mask ? features & mask_features : 0U;
+    const LayoutKey layout_key{cascade ? Kind::depth_cascade : Kind::depth_view, {}};
+    return find_or_make({layout_key, mask, used}, [&](VkPipelineLayout pipeline_layout) {
+        const Spirv plain = cascade ? Spirv(depth_shadow_m0) : Spirv(depth_view_m0);
+        const Spirv masked = cascade ? Spirv(depth_shadow_m1) : Spirv(depth_view_m1);
+        const SpecializationConstant constant{0, used};
+        return create_graphics_pipeline(*device_, cache_,
+                                        {.layout = pipeline_layout,
+                                         .vertex_spirv = mask ? masked : plain,
+                                         .fragment_spirv = mask ? Spirv(depth_mask_fragment) : Spirv(),
+                                         .constants = {&constant, 1},
+                                         .vertex_bindings = vertex_bindings(mask),
+                                         .vertex_attributes = vertex_attributes(mask),
+                                         .depth_format = depth_format,
+                                         .depth_test = true,
+                                         .depth_write = true,
+                                         .depth_compare = cascade ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER,
+                                         .dynamic_culling = true});
+    });
+}
+
+tl::expected<Program, Error> RendererPipelines::forward(const ForwardVariant& variant, std::uint32_t features) {
+    return find_or_make({{Kind::forward, variant}, false, features}, [&](VkPipelineLayout pipeline_layout) {
+        const SpecializationConstant constant{0, features};
+        constexpr VkColorComponentFlags rgba = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                                               VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+        const VkPipelineColorBlendAttachmentState premultiplied{
+            .blendEnable = VK_TRUE,
+            .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+            .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+            .colorBlendOp = VK_BLEND_OP_ADD,
+            .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+            .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+            .alphaBlendOp = VK_BLEND_OP_ADD,
+            .colorWriteMask = rgba};
+        using Blends = std::span<const VkPipelineColorBlendAttachmentState>;
+        return create_graphics_pipeline(
+            *device_, cache_,
+            {.layout = pipeline_layout,
+             .vertex_spirv = forward_vertex,
+             .fragment_spirv = forward_spirv(variant),
+             .constants = {&constant, 1},
+             .vertex_bindings = vertex_bindings(true),
+             .vertex_attributes = vertex_attributes(true),
+             .color_formats = {&color_format_, 1},
+             .depth_format = depth_format,
+             .blends = variant.transparent ? Blends(&premultiplied, 1) : Blends(),
+             .depth_test = true,
+             .depth_write = false,
+             // Opaque surfaces are those that the depth pre-pass left, to the bit.
+             .depth_compare = variant.transparent ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_EQUAL,
+             .dynamic_culling = true});
+    });
+}
+
+tl::expected<Program, Error> RendererPipelines::sky() {
+    return find_or_make({{Kindsky_fragment, {}}, false, 0}, [&](VkPipelineLayout pipeline_layout) {
+        return create_graphics_pipeline(*device_, cache_,
+                                        {.layout = pipeline_layout,
+                                         .vertex_spirv = full_screen_far_vertex,
+                                         .fragment_spirv = sky_fragment,
+                                         .color_formats = {&color_format_, 1},
+                                         .depth_format = depth_format,
+                                         .depth_test = true,
+                                         .depth_compare = VK_COMPARE_OP_EQUAL});
+    });
+}
+
+tl::expected<Program, Error> RendererPipelines::compute(Kind kind, std::span<const std::uint32_t> spirv) {
+    return find_or_make({{kind, {}}, false, 0}, [&](VkPipelineLayout pipeline_layout) {
+        return create_compute_pipeline(*device_, cache_, pipeline_layout, spirv);
+    });
+}
+
+tl::expected<Program, Error> RendererPipelines::luminance_sums() {
+    return compute(Kind::luminance_sums, luminance_compute);
+}
+
+tl::expected<Program, Error> RendererPipelines::exposure() {
+    return compute(Kind::exposure, exposure_compute);
+}
+
+tl::expected<Program, Error> RendererPipelines::tone_mapping(bool automatic) {
+    const Kind kind = automatic ? Kind::tone_mapping_automatic : Kind::tone_mapping;
+    return find_or_make({{kind, {}}, false, 0}, [&](VkPipelineLayout pipeline_layout) {
+        return create_graphics_pipeline(*device_, cache_,
+                                        {.layout = pipeline_layout,
+                                         .vertex_spirv = full_screen_far_vertex,
+                                         .fragment_spirv = automatic ? Spirv(tone_mapping_a1) : Spirv(tone_mapping_a0),
+                                         .color_formats = {&picture_format, 1}});
+    });
+}
+
+} // namespace tyndall::engine

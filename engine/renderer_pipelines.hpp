@@ -1,0 +1,101 @@
+// The renderer's pipelines, made when a frame first needs them.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+
+#include <tl/expected.hpp>
+
+#include "engine/pipelines.hpp"
+
+namespace tyndall::engine {
+
+inline constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
+inline constexpr VkFormat picture_format = VK_FORMAT_R8G8B8A8_UNORM;
+
+enum class LocalLights : std::uint8_t { none, all, of_cluster };
+
+/// What a forward shader binds and does, as in shaders/engine/forward.frag.
+struct ForwardVariant {
+    bool sun_shadow = false;
+    LocalLights lights = LocalLights::none;
+    bool transparent = false;
+    bool scattering = false; ///< with `transparent` only
+
+    friend auto operator<=>(const ForwardVariant&, const ForwardVariant&) = default;
+};
+
+/// Where depth alone is drawn.
+enum class DepthTarget : std::uint8_t { view, cascade };
+
+/// A pipeline and the layout to bind for it.
+struct Program {
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+class RendererPipelines {
+public:
+    /// `materials`: the layout of set 1, which outlives this.
+    RendererPipelines(const Device& device, VkPipelineCache cache, VkDescriptorSetLayout materials,
+                      VkFormat color_format)
+        : device_(&device), cache_(cache), materials_(materials), color_format_(color_format) {}
+
+    // `features` as in materials_gpu.hpp.
+    [[nodiscard]] tl::expected<Program, Error> depth(DepthTarget target, bool mask, std::uint32_t features);
+    [[nodiscard]] tl::expected<Program, Error> forward(const ForwardVariant& variant, std::uint32_t features);
+    [[nodiscard]] tl::expected<Program, Error> sky();
+    [[nodiscard]] tl::expected<Program, Error> luminance_sums();
+    [[nodiscard]] tl::expected<Program, Error> exposure();
+    [[nodiscard]] tl::expected<Program, Error> tone_mapping(bool automatic);
+
+    /// Push constants of luminance.comp and exposure.comp.
+    struct LuminancePush {
+        std::uint32_t grid_x, grid_y, step, partials;
+    };
+    struct ExposurePush {
+        std::uint32_t partials;
+        float key, fallback;
+    };
+
+private:
+    enum class Kind : std::uint8_t {
+        depth_view,
+        depth_cascade,
+        forward,
+        sky,
+        luminance_sums,
+        exposure,
+        tone_mapping,
+        tone_mapping_automatic
+    };
+    struct LayoutKey {
+        Kind kind;
+        ForwardVariant variant;
+        friend auto operator<=>(const LayoutKey&, const LayoutKey&) = default;
+    };
+    struct PipelineKey {
+        LayoutKey layout;
+        bool mask;
+        std::uint32_t features;
+        friend auto operator<=>(const PipelineKey&, const PipelineKey&) = default;
+    };
+    struct Layout {
+        DescriptorSetLayout set;
+        PipelineLayout pipeline;
+    };
+    [[nodiscard]] tl::expected<VkPipelineLayout, Error> layout(const LayoutKey& key);
+    template <typename Make>
+    [[nodiscard]] tl::expected<Program, Error> find_or_make(const PipelineKey& key, Make&& make);
+    [[nodiscard]] tl::expected<Program, Error> compute(Kind kind, std::span<const std::uint32_t> spirv);
+
+    const Device* device_;
+    VkPipelineCache cache_;
+    VkDescriptorSetLayout materials_;
+    VkFormat color_format_;
+    std::map<LayoutKey, Layout> layouts_;
+    std::map<PipelineKey, Pipeline> pipelines_;
+};
+
+} // namespace tyndall::engine

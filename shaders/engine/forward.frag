@@ -1,0 +1,187 @@
+// Lit surfaces. Bindings differ between the variants:
+//   SUN_SHADOW   1: the sun shines through its cascades
+//   LIGHTS       0: none, 1: all of them, 2: those of the point's cluster
+//   TRANSPARENT  1: premultiplied by alpha
+//   SCATTERING   1: (with TRANSPARENT) fogged at the fragment's own depth
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "engine/brdf.glsl"
+#include "engine/material.glsl"
+
+layout(set = 0, binding = 0) uniform Frame { FrameParameters frame; };
+#if SUN_SHADOW
+#include "engine/sun_visibility.glsl"
+#endif
+#if LIGHTS
+#include "common/lights.glsl"
+layout(set = 0, binding = 4, std430) readonly restrict buffer Lights { GpuLight lights[]; };
+#endif
+#if LIGHTS == 2
+#include "common/light_clusters.glsl"
+layout(set = 0, binding = 5) uniform Clusters { LightClusters clusters; };
+layout(set = 0, binding = 6, std430) readonly restrict buffer Masks { uint masks[]; };
+#endif
+#if SCATTERING
+#include "common/scattering_volume.glsl"
+layout(set = 0, binding = 7) uniform Volume { ScatteringVolume volume; };
+layout(set = 0, binding = 8) uniform sampler2DArray accumulated;
+#endif
+
+layout(location = 0) in vec3 surface_position;
+layout(location = 1) in vec3 surface_normal;
+layout(location = 2) in vec4 surface_tangent;
+layout(location = 3) in vec4 surface_uv;
+layout(location = 4) in vec4 surface_color;
+
+layout(location = 0) out vec4 color;
+
+// A degenerate transform leaves no direction: zero then, and not a number that spreads.
+vec3 unit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-30)); }
+
+vec4 base_color() {
+    vec4 base = material.base_color;
+    if (has(feature_vertex_color)) {
+        base *= surface_color;
+    }
+    if (has_texture(base_color_slot)) {
+        base *= texture(base_color_texture, slot_uv(base_color_slot, surface_uv));
+    }
+    return base;
+}
+
+// Of unit length, toward the eye's side of the surface.
+vec3 geometric_normal() {
+    vec3 n = unit(surface_normal);
+    return gl_FrontFacing ? n : -n;
+}
+
+vec3 shading_normal(vec3 geometric) {
+    if (!has_texture(normal_slot)) {
+        return geometric;
+    }
+    vec3 mapped = texture(normal_texture, slot_uv(normal_slot, surface_uv)).xyz * 2.0 - 1.0;
+    mapped.xy *= material.surface.z;
+    vec3 tangent = unit(surface_tangent.xyz);
+    vec3 bitangent = cross(unit(surface_normal), tangent) * surface_tangent.w;
+    // On back faces the whole frame turns with the normal (glTF 2.0, 3.9.4, double sided).
+    vec3 turned = gl_FrontFacing ? mapped.x * tangent + mapped.y * bitangent : -(mapped.x * tangent + mapped.y * bitangent);
+    return unit(turned + mapped.z * geometric);
+}
+
+Reflection make_reflection(vec3 base, float metallic, float roughness) {
+    float specular = material.specular.w;
+    vec3 specular_color = material.specular.rgb;
+    if (has_texture(specular_slot)) {
+        specular *= texture(specular_texture, slot_uv(specular_slot, surface_uv)).a;
+    }
+    if (has_texture(specular_color_slot)) {
+        specular_color *= texture(specular_color_texture, slot_uv(specular_color_slot, surface_uv)).rgb;
+    }
+    vec3 dielectric_f0 = min(0.04 * specular_color, vec3(1.0)) * specular;
+    Reflection r;
+    r.diffuse = base * (1.0 - metallic);
+    r.f0 = mix(dielectric_f0, base, metallic);
+    r.f90 = mix(specular, 1.0, metallic);
+    r.dielectric_f = vec2(max(dielectric_f0.r, max(dielectric_f0.g, dielectric_f0.b)), specular);
+    r.alpha = roughness * roughness;
+    return r;
+}
+
+vec3 ambient_radiance(vec3 direction) {
+    return mix(frame.ambient_down.rgb, frame.ambient_up.rgb, 0.5 + 0.5 * direction.y);
+}
+
+#if LIGHTS
+vec3 local_light(uint index, Reflection r, vec3 normal, vec3 to_eye, float n_v) {
+    vec3 to_light;
+    vec3 irradiance = light_irradiance_normal(lights[index], surface_position, to_light);
+    return irradiance == vec3(0.0) ? vec3(0.0) : irradiance * reflect_light(r, normal, to_eye, n_v, to_light);
+}
+
+vec3 local_lights(Reflection r, vec3 normal, vec3 to_eye, float n_v, vec2 uv, float depth_m) {
+    vec3 sum = vec3(0.0);
+#if LIGHTS == 2
+    uint first = cluster_index(clusters, uv, depth_m) * clusters.block.w;
+    for (uint word = 0u; word < clusters.block.w; ++word) {
+        for (uint mask = masks[first + word]; mask != 0u; mask &= mask - 1u) {
+            sum += local_light(32u * word + uint(findLSB(mask)), r, normal, to_eye, n_v);
+        }
+    }
+#else
+    uint count = uint(frame.ambient_down.w);
+    for (uint i = 0u; i < count; ++i) {
+        sum += local_light(i, r, normal, to_eye, n_v);
+    }
+#endif
+    return sum;
+}
+#endif
+
+vec3 lit_radiance(vec3 base, float depth_m) {
+    float metallic = material.surface.x;
+    float roughness = material.surface.y;
+    if (has_texture(surface_slot)) {
+        vec2 texel = texture(surface_texture, slot_uv(surface_slot, surface_uv)).gb;
+        roughness *= texel.x;
+        metallic *= texel.y;
+    }
+    roughness = clamp(roughness, 0.045, 1.0); // smoother is a spike that neither numbers nor pixels can hold
+    Reflection r = make_reflection(base, metallic, roughness);
+    vec3 geometric = geometric_normal();
+    vec3 normal = shading_normal(geometric);
+    vec3 to_eye = normalize(frame.to_eye.xyz - frame.to_eye.w * surface_position);
+    float n_v = max(dot(normal, to_eye), 1e-3);
+
+    float occlusion = 1.0;
+    if (has_texture(occlusion_slot)) {
+        float texel = texture(occlusion_texture, slot_uv(occlusion_slot, surface_uv)).r;
+        occlusion += material.surface.w * (texel - 1.0);
+    }
+    vec2 environment = environment_reflection(roughness, n_v);
+    vec3 mirrored = r.f0 * environment.x + r.f90 * environment.y;
+    float beneath = 1.0 - (r.dielectric_f.x * environment.x + r.dielectric_f.y * environment.y);
+    vec3 radiance = occlusion * (r.diffuse * beneath * ambient_radiance(normal) +
+                                 mirrored * ambient_radiance(reflect(-to_eye, normal)));
+
+    vec3 to_sun = -frame.sun_direction.xyz;
+    vec3 sun_light = reflect_light(r, normal, to_eye, n_v, to_sun) * frame.sun_illuminance.rgb;
+#if SUN_SHADOW
+    if (dot(geometric, to_sun) > 0.0) {
+        radiance += sun_light * sun_visibility(surface_position, geometric, depth_m);
+    }
+#else
+    radiance += sun_light;
+#endif
+    int fills = int(frame.ambient_up.w);
+    for (int i = 0; i < fills; ++i) {
+        radiance += reflect_light(r, normal, to_eye, n_v, -frame.fill_direction[i].xyz) * frame.fill_illuminance[i].rgb;
+    }
+#if LIGHTS
+    radiance += local_lights(r, normal, to_eye, n_v, gl_FragCoord.xy * frame.size.zw, depth_m);
+#endif
+    vec3 emission = material.emission_cutoff.rgb;
+    if (has_texture(emission_slot)) {
+        emission *= texture(emission_texture, slot_uv(emission_slot, surface_uv)).rgb;
+    }
+    return radiance + emission;
+}
+
+void main() {
+    vec4 base = base_color();
+    float depth_m = dot(frame.depth_row.xyz, surface_position) + frame.depth_row.w;
+    vec3 radiance = has(feature_unlit) ? base.rgb : lit_radiance(base.rgb, depth_m);
+#if SCATTERING
+    vec3 fog;
+    vec3 transmittance;
+    scattering_lookup(volume, accumulated, gl_FragCoord.xy * frame.size.zw, depth_m, fog, transmittance);
+    radiance = radiance * transmittance + fog;
+#endif
+    radiance = min(radiance, vec3(frame.ray_origin.w));
+#if TRANSPARENT
+    float alpha = clamp(base.a, 0.0, 1.0);
+    color = vec4(radiance * alpha, alpha);
+#else
+    color = vec4(radiance, 1.0);
+#endif
+}

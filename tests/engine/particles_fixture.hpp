@@ -1,0 +1,50 @@
+// The engine's device with core and synchronisation validation, and an executor. Any validation error fails the test.
+// TYNDALL_TEST_MODE as in tests/gpu/gpu_fixture.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <deque>
+#include <optional>
+#include <span>
+
+#include "engine/device.hpp"
+#include "engine/frame.hpp"
+#include "engine/memory.hpp"
+#include "tests/gpu/gpu_fixture.hpp"
+
+namespace tyndall::test {
+
+class ParticleTest : public testing::Test {
+protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    [[nodiscard]] const engine::Device& device() const { return *device_; }
+    /// Compiles and executes one frame to its end; any error fails the test.
+    void run(const rg::DeclaredGraph& graph, std::span<const rg::ImportBinding> imports);
+
+    /// A mapped storage buffer; lives as long as the test.
+    [[nodiscard]] engine::Buffer& host_buffer(VkDeviceSize size_bytes);
+    template <typename T>
+    [[nodiscard]] engine::Buffer& upload(std::span<const T> values) {
+        engine::Buffer& buffer = host_buffer(std::max<std::size_t>(values.size_bytes(), 16));
+        std::memcpy(buffer.mapped().data(), values.data(), values.size_bytes());
+        return buffer;
+    }
+
+private:
+    void record_and_wait(const rg::DeclaredGraph& graph, const rg::Plan& plan,
+                         std::span<const rg::ImportBinding> imports);
+
+    std::optional<engine::VulkanInstance> instance_;
+    std::optional<engine::Device> device_;
+    std::optional<rg::Executor> executor_;
+    std::deque<engine::Buffer> buffers_;
+};
+
+/// Looks along -Z of the world from `origin_m`, with tan(half angle) = `slope` up and sideways.
+[[nodiscard]] engine::FrameView square_view(const glm::dvec3& origin_m, double time_s, double slope,
+                                            std::uint32_t size);
+
+} // namespace tyndall::test
