@@ -20,8 +20,8 @@ namespace tyndall::engine {
 [[nodiscard]] double far_depth_m(const FrameView& view);
 [[nodiscard]] bool is_perspective(const FrameView& view);
 
-/// The direction, not of unit length, from the eye through uv of the image is origin + uv.x u + uv.y v, in render space,
-/// and advances view depth by 1.
+/// The direction, not of unit length, from the eye through uv of the image is origin + uv.x u + uv.y v, in render
+/// space, and advances view depth by 1.
 struct ViewRays {
     glm::dvec3 origin{0.0, 0.0, -1.0};
     glm::dvec3 u{0.0};

@@ -79,8 +79,8 @@ SliceSphere slice_sphere(const FrameView& view, double start_m, double end_m) {
     const double end_radius_m = perspective ? half_diagonal * end_m : half_diagonal;
     // The depth that is equally far from the near and the far corners, if it lies within the slice.
     const double length_m = end_m - start_m;
-    const double equal = 0.5 * (start_m + end_m) +
-                         0.5 * (end_radius_m - start_radius_m) * (end_radius_m + start_radius_m) / length_m;
+    const double equal =
+        0.5 * (start_m + end_m) + 0.5 * (end_radius_m - start_radius_m) * (end_radius_m + start_radius_m) / length_m;
     SliceSphere sphere;
     sphere.depth_m = std::clamp(equal, start_m, end_m);
     sphere.radius_m = std::max(std::hypot(sphere.depth_m - start_m, start_radius_m),

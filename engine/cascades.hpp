@@ -3,8 +3,8 @@
 //
 // Each cascade holds a sphere around its slice of the view, so that its size depends on the lens alone and turning the
 // camera changes nothing (Valient, Stable Rendering of Cascaded Shadow Maps, ShaderX6, 2008). Its middle moves in whole
-// texels of a grid that is fixed in the world, so that a resting caster always falls on the same texels. Depth spans all
-// casters of the scene, the same for every cascade.
+// texels of a grid that is fixed in the world, so that a resting caster always falls on the same texels. Depth spans
+// all casters of the scene, the same for every cascade.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ struct CascadesFit {
     std::array<CascadeFit, most_cascades> cascades{};
     std::uint32_t count = 0;
     std::uint32_t resolution = 0;
-    double near_m = 0.0; ///< light space z where stored depth is 0
+    double near_m = 0.0;  ///< light space z where stored depth is 0
     double range_m = 1.0; ///< metres that stored depth 1 spans
 };
 

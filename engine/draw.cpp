@@ -24,6 +24,7 @@ void DrawRecorder::draw(const Draw& draw) {
     if (!known_ || last_.pipeline != draw.pipeline) {
         vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline);
     }
+    // Draws of the same layout read materials either all or, where masks stand among plain depth, from time to time.
     if (draw.material != VK_NULL_HANDLE && (!known_ || last_.material != draw.material)) {
         vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1, &draw.material, 0, nullptr);
     }
@@ -34,9 +35,7 @@ void DrawRecorder::draw(const Draw& draw) {
         vk.CmdSetFrontFace(cmd, draw.front);
     }
     vk.CmdDrawIndexed(cmd, draw.range.index_count, 1, draw.range.first_index, draw.range.first_vertex, draw.instance);
-    const VkDescriptorSet bound = draw.material != VK_NULL_HANDLE || !known_ ? draw.material : last_.material;
     last_ = draw;
-    last_.material = bound;
     known_ = true;
 }
 

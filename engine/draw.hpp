@@ -29,7 +29,8 @@ struct Draw {
 /// Vertex and index buffers; `attributes`: beside the positions.
 void declare_geometry(rg::PassBuilder& pass, const GeometryImports& geometry, bool attributes);
 
-/// Records draws that share a pipeline layout. What else records into the same pass may change everything: `forget` then.
+/// Records draws that share a pipeline layout. What else records into the same pass may change everything: `forget`
+/// then.
 class DrawRecorder {
 public:
     DrawRecorder(rg::PassContext& ctx, VkPipelineLayout layout, const GeometryImports& geometry, bool attributes)

@@ -17,8 +17,8 @@ namespace tyndall::engine {
 /// space looks along -Z with +Y up; "depth" is positive view depth -z.
 struct FrameView {
     glm::dmat4 view_from_render{1.0}; ///< rotation only
-    glm::dmat4 clip_from_view{1.0};   ///< y down, z in [0, 1] reversed: 1 at the near plane, 0 at the far one or infinity
-    glm::dvec3 origin_m{0.0};         ///< world
+    glm::dmat4 clip_from_view{1.0}; ///< y down, z in [0, 1] reversed: 1 at the near plane, 0 at the far one or infinity
+    glm::dvec3 origin_m{0.0};       ///< world
     VkExtent2D size = {1, 1};
     double time_s = 0.0;
     std::uint64_t frame_index = 0;

@@ -31,10 +31,10 @@ struct FrameLook {
 class FrameData {
 public:
     struct Slot {
-        Buffer parameters; ///< gpu::FrameParameters
-        Buffer instances;  ///< gpu::GpuInstance, by Scene::instances
-        Buffer lights;     ///< gpu::GpuLight
-        Buffer sun;        ///< gpu::SunCascades
+        Buffer parameters;                  ///< gpu::FrameParameters
+        Buffer instances;                   ///< gpu::GpuInstance, by Scene::instances
+        Buffer lights;                      ///< gpu::GpuLight
+        Buffer sun;                         ///< gpu::SunCascades
         std::optional<glm::dvec3> origin_m; ///< render space that instances and lights are in
     };
     [[nodiscard]] static tl::expected<FrameData, Error> create(const Device& device, std::uint32_t frames_in_flight,

@@ -29,10 +29,10 @@ struct DirectionalLight {
 
 /// A scene's lights by what they need.
 struct LightRoles {
-    std::optional<DirectionalLight> sun;      ///< the brightest directional light
-    std::vector<DirectionalLight> fills;      ///< the next brightest, most_fill_lights at most
-    std::vector<Light> local;                 ///< point and spot, in the scene's order; dark ones left out
-    std::vector<std::string> notes;           ///< a sentence for each thing left out
+    std::optional<DirectionalLight> sun; ///< the brightest directional light
+    std::vector<DirectionalLight> fills; ///< the next brightest, most_fill_lights at most
+    std::vector<Light> local;            ///< point and spot, in the scene's order; dark ones left out
+    std::vector<std::string> notes;      ///< a sentence for each thing left out
 };
 [[nodiscard]] LightRoles assign_lights(const Scene& scene);
 

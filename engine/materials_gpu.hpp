@@ -29,9 +29,9 @@ inline constexpr std::uint32_t feature_vertex_color = 1U << 9U;
 struct MaterialsGpu {
     DescriptorSetLayout layout; ///< of set 1
     DescriptorPool pool;
-    Buffer parameters;                    ///< gpu::GpuMaterial each, at the device's uniform alignment
-    std::vector<VkDescriptorSet> sets;    ///< by Scene::materials
-    std::vector<std::uint32_t> features;  ///< by Scene::materials
+    Buffer parameters;                   ///< gpu::GpuMaterial each, at the device's uniform alignment
+    std::vector<VkDescriptorSet> sets;   ///< by Scene::materials
+    std::vector<std::uint32_t> features; ///< by Scene::materials
 };
 
 /// Content after uploader.finish().

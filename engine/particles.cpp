@@ -64,6 +64,10 @@ std::vector<VkDescriptorSetLayoutBinding> bindings_of(std::size_t index) {
     return bindings;
 }
 
+bool has_lights(const ParticleSurroundings& surroundings) {
+    return surroundings.lights && surroundings.lights->lights.valid();
+}
+
 } // namespace
 
 tl::expected<ParticleSystem, Error> ParticleSystem::create(const Device& device, VkPipelineCache cache,
@@ -214,14 +218,14 @@ void ParticleSystem::add_reads(rg::PassBuilder& pass, const ParticleDraws& draws
         pass.reads(surroundings.sun_shadow->parameters, rg::Access::uniform_graphics)
             .reads(surroundings.sun_shadow->cascades, rg::Access::sampled_graphics);
     }
-    if (surroundings.lights) {
+    if (has_lights(surroundings)) {
         pass.reads(surroundings.lights->lights, rg::Access::storage_graphics);
     }
 }
 
 const ParticleSystem::Program& ParticleSystem::program_for(const ParticleSurroundings& surroundings) const {
     const std::size_t sun_shadow = surroundings.sun_shadow ? 1 : 0;
-    const std::size_t lights = surroundings.lights ? 1 : 0;
+    const std::size_t lights = has_lights(surroundings) ? 1 : 0;
     return programs_[surroundings.scattering ? scattering_index : 2 * sun_shadow + lights];
 }
 
@@ -244,7 +248,7 @@ void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, cons
             bind(ctx.uniform(4, surroundings.sun_shadow->parameters));
             bind(ctx.sampled(5, surroundings.sun_shadow->cascades, nearest_.get(), array_view));
         }
-        if (surroundings.lights) {
+        if (has_lights(surroundings)) {
             bind(ctx.storage(6, surroundings.lights->lights));
         }
     }

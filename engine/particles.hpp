@@ -46,7 +46,7 @@ struct ParticleSurroundings {
     std::optional<ScatteringVolumeImages> scattering;
     // Read only where there is no scattering volume:
     std::optional<SunShadow> sun_shadow; ///< absent: the sun reaches everything
-    std::optional<SceneLights> lights;   ///< absent: none
+    std::optional<SceneLights> lights;   ///< absent or without a valid buffer: none
 };
 
 class ParticleSystem {

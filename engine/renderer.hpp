@@ -25,6 +25,7 @@
 #include "engine/draw.hpp"
 #include "engine/frame.hpp"
 #include "engine/frame_data.hpp"
+#include "engine/particles.hpp"
 #include "engine/renderer_pipelines.hpp"
 #include "engine/renderer_settings.hpp"
 #include "engine/scene.hpp"
@@ -35,8 +36,6 @@
 #include "rendergraph/injection.hpp"
 
 namespace tyndall::engine {
-
-class ParticleSystem;
 
 /// One frame that is asked for.
 struct FrameRequest {
@@ -104,6 +103,7 @@ private:
         GeometryImports geometry;
         rg::Buffer parameters;
         rg::Buffer instances;
+        std::optional<ParticleDraws> particles;
         std::optional<Error> error; ///< of a callback
     };
 

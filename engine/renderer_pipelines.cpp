@@ -197,8 +197,8 @@ tl::expected<Program, Error> RendererPipelines::depth(DepthTarget target, bool m
 tl::expected<Program, Error> RendererPipelines::forward(const ForwardVariant& variant, std::uint32_t features) {
     return find_or_make({{Kind::forward, variant}, false, features}, [&](VkPipelineLayout pipeline_layout) {
         const SpecializationConstant constant{0, features};
-        constexpr VkColorComponentFlags rgba = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                                               VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+        constexpr VkColorComponentFlags rgba =
+            VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
         const VkPipelineColorBlendAttachmentState premultiplied{
             .blendEnable = VK_TRUE,
             .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,

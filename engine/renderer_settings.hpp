@@ -32,11 +32,11 @@ struct Background {
 [[nodiscard]] Background default_background(const std::optional<DirectionalLight>& sun);
 
 struct ExposureSettings {
-    std::optional<double> ev100;   ///< absent: from the mean of the image's log luminance
-    double compensation_ev = 0.0;  ///< of the automatic exposure; positive is brighter
+    std::optional<double> ev100;  ///< absent: from the mean of the image's log luminance
+    double compensation_ev = 0.0; ///< of the automatic exposure; positive is brighter
 };
-/// What radiance is multiplied with before tone mapping, so that the brightest that a sensor of ISO 100 holds becomes 1:
-/// 1 / (1.2 * 2^EV100) (Lagarde and de Rousiers, Moving Frostbite to Physically Based Rendering, 2014, 5.1).
+/// What radiance is multiplied with before tone mapping, so that the brightest that a sensor of ISO 100 holds becomes
+/// 1: 1 / (1.2 * 2^EV100) (Lagarde and de Rousiers, Moving Frostbite to Physically Based Rendering, 2014, 5.1).
 [[nodiscard]] double exposure_from_ev100(double ev100);
 
 struct RendererSettings {

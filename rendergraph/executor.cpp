@@ -97,8 +97,10 @@ ExecutorState::~ExecutorState() {
     if (vk.DestroyDevice == nullptr) {
         return; // the table was never loaded: nothing was made
     }
-    for (const FrameSlot& slot : slots) {
-        static_cast<void>(wait_for_values(slot.values)); // a lost device has finished too
+    // Not just the timelines: a driver may still tidy up a submission after it has signalled the last value, and the
+    // timelines are about to go. A lost device has finished too.
+    for (const RealQueue& queue : queues) {
+        static_cast<void>(vk.QueueWaitIdle(queue.info.queue));
     }
     for (const auto& set : transients) {
         destroy(set->objects, set->memory);

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/device.hpp"
+#include "engine/device_info.hpp"
 #include "samples/tyndall/arguments.hpp"
 
 namespace tyndall::samples {
@@ -21,11 +21,6 @@ std::string queue_flags(VkQueueFlags flags) {
     return text;
 }
 
-std::string version(std::uint32_t api) {
-    return std::to_string(VK_API_VERSION_MAJOR(api)) + "." + std::to_string(VK_API_VERSION_MINOR(api)) + "." +
-           std::to_string(VK_API_VERSION_PATCH(api));
-}
-
 nlohmann::ordered_json to_json(const engine::DeviceInfo& device) {
     nlohmann::ordered_json queues = nlohmann::ordered_json::array();
     for (const engine::QueueFamilyInfo& family : device.queues) {
@@ -41,7 +36,7 @@ nlohmann::ordered_json to_json(const engine::DeviceInfo& device) {
     return {{"index", device.index},
             {"name", device.name},
             {"driver", device.driver},
-            {"api_version", version(device.api_version)},
+            {"api_version", engine::version_text(device.api_version)},
             {"type", engine::device_type_name(device.type)},
             {"usable", device.lacks.empty()},
             {"lacks", device.lacks},
@@ -54,7 +49,7 @@ nlohmann::ordered_json to_json(const engine::DeviceInfo& device) {
 void print(const engine::DeviceInfo& device) {
     std::printf("%u: %s (%s)\n   driver   %s\n   Vulkan   %s\n", device.index, device.name.c_str(),
                 std::string(engine::device_type_name(device.type)).c_str(), device.driver.c_str(),
-                version(device.api_version).c_str());
+                engine::version_text(device.api_version).c_str());
     for (const engine::QueueFamilyInfo& family : device.queues) {
         std::printf("   queues   family %u: %u x %s, %u timestamp bits\n", family.family, family.count,
                     queue_flags(family.flags).c_str(), family.timestamp_valid_bits);
@@ -73,19 +68,20 @@ void print(const engine::DeviceInfo& device) {
 } // namespace
 
 int run_info(const InfoArguments& arguments) {
-    const tl::expected<engine::Instance, engine::Error> instance = engine::Instance::create(engine::Validation::off);
+    const tl::expected<engine::VulkanInstance, engine::Error> instance =
+        engine::VulkanInstance::create(engine::Validation::off);
     if (!instance) {
         std::fprintf(stderr, "tyndall: %s\n", instance.error().message.c_str());
         return exit_failed;
     }
     std::vector<engine::DeviceInfo> devices = engine::list_devices(*instance);
     if (!arguments.device.empty()) {
-        const tl::expected<engine::Device, engine::Error> device = engine::Device::create(*instance, arguments.device);
-        if (!device) {
-            std::fprintf(stderr, "tyndall: %s\n", device.error().message.c_str());
+        const tl::expected<std::uint32_t, engine::Error> chosen = engine::choose_device(devices, arguments.device);
+        if (!chosen) {
+            std::fprintf(stderr, "tyndall: %s\n", chosen.error().message.c_str());
             return exit_bad_input;
         }
-        devices = {device->info()};
+        devices = {devices[*chosen]};
     }
     if (devices.empty()) {
         std::fprintf(stderr,

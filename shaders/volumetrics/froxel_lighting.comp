@@ -42,7 +42,7 @@ layout(push_constant) uniform Push { uint history_valid; };
 vec3 sun_scattering(vec3 position, float depth_m, vec3 to_eye) {
     float visibility = 1.0;
 #if SUN_SHADOW
-    visibility = sun_visibility(cascades, esm, u.esm_exponents, u.esm_size.xy, position, depth_m);
+    SUN_VISIBILITY(cascades, esm, u.esm_exponents, u.esm_size.xy, position, depth_m, visibility)
 #endif
     return u.sun_illuminance.rgb * (visibility * henyey_greenstein(u.phase.x, u.sun_direction.xyz, to_eye));
 }

@@ -1,0 +1,111 @@
+// The sun's cascades: one pass a layer, left out where the layer still holds what it should.
+#include <array>
+#include <string>
+
+#include "engine/renderer.hpp"
+
+namespace tyndall::engine {
+namespace {
+
+/// Who may sample the cascades: forward shading, particles, features.
+constexpr VkPipelineStageFlags2 sampling_stages = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
+                                                  VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
+                                                  VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkImageLayout resting_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+
+} // namespace
+
+bool Renderer::is_held(std::uint32_t cascade) const {
+    return cascade_cache_ && cascade_cache_->held[cascade] &&
+           same_texels(*cascade_cache_->held[cascade], *frame_.cascades, cascade);
+}
+
+rg::Image Renderer::cascade_image(rg::GraphBuilder& graph, bool drawn) {
+    const std::uint32_t side = frame_.cascades->resolution;
+    const rg::ImageDesc desc{.format = depth_format, .extent = {side, side, 1}, .layers = frame_.cascades->count};
+    if (!cascade_cache_) {
+        return graph.create_image("sun cascades", desc);
+    }
+    rg::ImportDesc import{
+        .initial_stages = sampling_stages, .initial_access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, .read_only = !drawn};
+    import.initial_layout = cascade_cache_->has_layout ? resting_layout : VK_IMAGE_LAYOUT_UNDEFINED;
+    if (drawn) {
+        import.has_final = true;
+        import.final_layout = resting_layout;
+        import.final_stages = sampling_stages;
+        import.final_access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+    }
+    cascade_cache_->has_layout = true;
+    const rg::Image image = graph.import_image("sun cascades", desc, import);
+    bindings_.push_back({.resource = image.resource, .image = cascade_cache_->image.handle()});
+    return image;
+}
+
+tl::expected<void, Error> Renderer::declare_shadows(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
+    if (!lights_.sun || casters_.empty()) {
+        omit("sun cascades",
+             lights_.sun ? "nothing in the scene casts a shadow" : "the scene has no directional light");
+        return {};
+    }
+    const std::uint32_t side = settings_.cascades.resolution;
+    if (settings_.cache_cascades && !cascade_cache_) {
+        auto image = DeviceImage::create(
+            *device_, {.format = depth_format,
+                       .extent = {side, side, 1},
+                       .layers = settings_.cascades.count,
+                       .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT});
+        if (!image) {
+            return tl::unexpected(image.error());
+        }
+        cascade_cache_.emplace().image = std::move(*image);
+    }
+    frame_.cascades = fit_cascades(frame_.view, casters_, lights_.sun->direction, settings_.cascades);
+    const std::uint32_t slot_index = frame_.view.frame_slot;
+    const gpu::SunCascades values =
+        make_sun_cascades(*frame_.cascades, frame_.view.origin_m, lights_.sun->illuminance_lux);
+    frame_data_.write_sun(slot_index, values);
+    const rg::Buffer parameters = import(graph, "sun parameters", frame_data_.slot(slot_index).sun);
+
+    std::array<bool, most_cascades> stale{};
+    bool any_stale = false;
+    for (std::uint32_t i = 0; i < frame_.cascades->count; ++i) {
+        stale[i] = !is_held(i);
+        any_stale = any_stale || stale[i];
+    }
+    rg::Image image = cascade_image(graph, any_stale);
+    for (std::uint32_t i = 0; i < frame_.cascades->count; ++i) {
+        const std::string name = "sun cascade " + std::to_string(i);
+        if (!stale[i]) {
+            omit(name, "it holds the same as in an earlier frame");
+            continue;
+        }
+        auto draws = depth_draws(DepthTarget::cascade, shadow_casters(scene_, *frame_.cascades, i));
+        auto program = pipelines_->depth(DepthTarget::cascade, false, 0);
+        if (!draws || !program) {
+            return tl::unexpected(draws ? program.error() : draws.error());
+        }
+        rg::PassBuilder pass = graph.add_pass(name, rg::PassKind::graphics);
+        pass.writes(image, rg::Access::depth_attachment,
+                    {.range = {.base_layer = i, .layer_count = 1}, .clear = rg::clear_depth(1.0F)})
+            .reads(parameters, rg::Access::uniform_graphics)
+            .reads(frame_.instances, rg::Access::storage_graphics);
+        declare_geometry(pass, frame_.geometry, true);
+        pass.executes([draws = std::move(*draws), layout = program->layout, geometry = frame_.geometry, parameters,
+                       instances = frame_.instances, i](rg::PassContext& ctx) {
+            const std::array<rg::Binding, 2> bindings = {ctx.uniform(0, parameters), ctx.storage(1, instances)};
+            ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, bindings);
+            ctx.vk().CmdPushConstants(ctx.cmd(), layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof i, &i);
+            DrawRecorder recorder(ctx, layout, geometry, true);
+            for (const Draw& draw : draws) {
+                recorder.draw(draw);
+            }
+        });
+        if (cascade_cache_) {
+            cascade_cache_->held[i] = *frame_.cascades;
+        }
+    }
+    blackboard.put(SunShadow{image, parameters, values});
+    return {};
+}
+
+} // namespace tyndall::engine

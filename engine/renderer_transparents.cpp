@@ -1,0 +1,122 @@
+// Transparent surfaces, back to front, and the particles between them.
+#include <string>
+
+#include "engine/forward_inputs.hpp"
+#include "engine/renderer.hpp"
+
+namespace tyndall::engine {
+namespace {
+
+/// The draws of one transparent instance: of a double-sided one first the faces that look away.
+struct TransparentDraw {
+    std::array<Draw, 2> draws;
+    std::size_t count = 1;
+};
+
+ParticleLighting lighting_of(const ForwardInputs& inputs, rg::Image depth) {
+    ParticleLighting lighting{.scene_depth = depth};
+    if (inputs.scattering) {
+        lighting.scattering = {inputs.scattering->accumulated, inputs.scattering->in_scattered,
+                               inputs.scattering->parameters};
+    }
+    if (inputs.sun) {
+        lighting.sun_shadow = {inputs.sun->cascades, inputs.sun->parameters};
+    }
+    if (inputs.lights) {
+        lighting.lights = inputs.lights->lights;
+    }
+    return lighting;
+}
+
+} // namespace
+
+tl::expected<void, Error> Renderer::declare_particles(rg::GraphBuilder& graph, rg::Blackboard&) {
+    if (particles_ == nullptr) {
+        omit("particle simulation, sort, split", "the scene has no particles");
+        return {};
+    }
+    const Ambient ambient = settings_.ambient.value_or(default_ambient(lights_.sun));
+    const ParticleView view{.view_from_render = glm::mat4(frame_.view.view_from_render),
+                            .clip_from_view = glm::mat4(frame_.view.clip_from_view),
+                            .origin_m = frame_.view.origin_m,
+                            .time_s = frame_.view.time_s,
+                            .extent = frame_.view.size,
+                            .ambient_radiance = 0.5F * (ambient.up + ambient.down),
+                            .sun_illuminance_lux = lights_.sun ? lights_.sun->illuminance_lux : glm::vec3(0.0F),
+                            .light_count = static_cast<std::uint32_t>(lights_.local.size())};
+    auto draws = particles_->declare(graph, view, frame_.lists.transparent_depths_m, frame_.view.frame_slot);
+    if (!draws) {
+        return tl::unexpected(draws.error());
+    }
+    bindings_.insert(bindings_.end(), draws->imports.begin(), draws->imports.end());
+    frame_.particles = *draws;
+    return {};
+}
+
+tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
+    if (frame_.lists.transparents.empty() && !frame_.particles) {
+        omit("transparents", "no transparent surface is in view and there are no particles");
+        return {};
+    }
+    ForwardInputs inputs{.parameters = frame_.parameters,
+                         .instances = frame_.instances,
+                         .shadow_sampler = shadow_sampler_.get(),
+                         .linear_sampler = linear_sampler_.get()};
+    inputs.find(blackboard, true);
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    std::vector<TransparentDraw> transparents;
+    for (const std::uint32_t instance : frame_.lists.transparents) {
+        const std::uint32_t primitive = scene_.instances[instance].primitive;
+        const auto program = pipelines_->forward(inputs.variant(true), scene_gpu_.features[primitive]);
+        if (!program) {
+            return tl::unexpected(program.error());
+        }
+        layout = program->layout;
+        Draw draw = instance_draw(instance);
+        draw.pipeline = program->pipeline;
+        TransparentDraw& transparent = transparents.emplace_back();
+        transparent.draws = {draw, draw};
+        if (draw.cull == VK_CULL_MODE_NONE) {
+            transparent.count = 2;
+            transparent.draws[0].cull = VK_CULL_MODE_FRONT_BIT;
+            transparent.draws[1].cull = VK_CULL_MODE_BACK_BIT;
+        }
+    }
+    SceneImages& images = *blackboard.find<SceneImages>();
+    const ParticleLighting lighting = lighting_of(inputs, images.depth);
+    rg::PassBuilder pass = graph.add_pass("transparents", rg::PassKind::graphics);
+    pass.modifies(images.color, rg::Access::color_attachment).reads(images.depth, rg::Access::depth_attachment);
+    if (!transparents.empty()) {
+        declare_geometry(pass, frame_.geometry, true);
+        inputs.declare(pass);
+    }
+    if (frame_.particles) {
+        particles_->add_reads(pass, *frame_.particles, lighting);
+    }
+    pass.executes([transparents = std::move(transparents), layout, inputs, geometry = frame_.geometry,
+                   particles = frame_.particles, system = particles_, lighting](rg::PassContext& ctx) {
+        DrawRecorder recorder(ctx, layout, geometry, true);
+        bool inputs_bound = false;
+        const auto draw_particles = [&](std::size_t interval) {
+            if (particles) {
+                system->draw(ctx, *particles, lighting, static_cast<std::uint32_t>(interval));
+                recorder.forget();
+                inputs_bound = false;
+            }
+        };
+        for (std::size_t i = 0; i < transparents.size(); ++i) {
+            draw_particles(i);
+            if (!inputs_bound) {
+                inputs.push(ctx, layout);
+                inputs_bound = true;
+            }
+            for (std::size_t side = 0; side < transparents[i].count; ++side) {
+                recorder.draw(transparents[i].draws[side]);
+            }
+        }
+        draw_particles(transparents.size());
+    });
+    return {};
+}
+
+} // namespace tyndall::engine
