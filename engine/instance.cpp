@@ -105,6 +105,11 @@ tl::expected<VulkanInstance, Error> VulkanInstance::create(Validation validation
                                     .ppEnabledLayerNames = layers.data(),
                                     .enabledExtensionCount = static_cast<std::uint32_t>(enabled.size()),
                                     .ppEnabledExtensionNames = enabled.data()};
+    for (const char* extension : extensions) {
+        if (!has_extension(nullptr, extension)) {
+            return tl::unexpected(Error{std::string("The Vulkan loader does not have the extension ") + extension});
+        }
+    }
     if (const VkResult result = vkCreateInstance(&info, nullptr, &instance.instance_); result != VK_SUCCESS) {
         return tl::unexpected(Error{"No Vulkan instance could be made (VkResult " + std::to_string(result) + ")"});
     }

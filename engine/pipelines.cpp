@@ -10,6 +10,11 @@ Error failed(const char* what, VkResult result) {
     return {std::string(what) + " could not be made (VkResult " + std::to_string(result) + ")"};
 }
 
+Error exceeded(const Device& device, const char* what, std::uint32_t limit, std::uint32_t needed) {
+    return {"Device '" + device.info().name + "' has " + std::to_string(limit) + " " + what + ", and a pass needs " +
+            std::to_string(needed)};
+}
+
 /// A module for the time of making a pipeline.
 class ShaderModule {
 public:
@@ -58,6 +63,13 @@ struct Specialization {
 
 tl::expected<DescriptorSetLayout, Error>
 create_set_layout(const Device& device, std::span<const VkDescriptorSetLayoutBinding> bindings, bool push) {
+    std::uint32_t descriptors = 0;
+    for (const VkDescriptorSetLayoutBinding& binding : bindings) {
+        descriptors += binding.descriptorCount;
+    }
+    if (push && descriptors > device.info().max_push_descriptors) {
+        return tl::unexpected(exceeded(device, "push descriptors", device.info().max_push_descriptors, descriptors));
+    }
     const VkDescriptorSetLayoutCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .flags = push ? VkDescriptorSetLayoutCreateFlags{VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR} : 0,
@@ -75,6 +87,9 @@ tl::expected<PipelineLayout, Error> create_pipeline_layout(const Device& device,
                                                            std::span<const VkDescriptorSetLayout> sets,
                                                            std::uint32_t push_constant_bytes,
                                                            VkShaderStageFlags push_constant_stages) {
+    if (const std::uint32_t limit = device.properties().limits.maxPushConstantsSize; push_constant_bytes > limit) {
+        return tl::unexpected(exceeded(device, "bytes of push constants", limit, push_constant_bytes));
+    }
     const VkPushConstantRange range{push_constant_stages, 0, push_constant_bytes};
     const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                           .setLayoutCount = static_cast<std::uint32_t>(sets.size()),

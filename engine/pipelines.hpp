@@ -72,7 +72,7 @@ private:
     std::size_t loaded_bytes_ = 0;
 };
 
-/// Set 0 holds push descriptors; further sets, if any, are given.
+/// With `push`, for vkCmdPushDescriptorSetKHR: at most DeviceInfo::max_push_descriptors descriptors.
 [[nodiscard]] tl::expected<DescriptorSetLayout, Error>
 create_set_layout(const Device& device, std::span<const VkDescriptorSetLayoutBinding> bindings, bool push);
 [[nodiscard]] tl::expected<PipelineLayout, Error> create_pipeline_layout(const Device& device,

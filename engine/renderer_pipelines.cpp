@@ -229,7 +229,7 @@ tl::expected<Program, Error> RendererPipelines::forward(const ForwardVariant& va
 }
 
 tl::expected<Program, Error> RendererPipelines::sky() {
-    return find_or_make({{Kindsky_fragment, {}}, false, 0}, [&](VkPipelineLayout pipeline_layout) {
+    return find_or_make({{Kind::sky, {}}, false, 0}, [&](VkPipelineLayout pipeline_layout) {
         return create_graphics_pipeline(*device_, cache_,
                                         {.layout = pipeline_layout,
                                          .vertex_spirv = full_screen_far_vertex,

@@ -13,21 +13,6 @@ struct TransparentDraw {
     std::size_t count = 1;
 };
 
-ParticleLighting lighting_of(const ForwardInputs& inputs, rg::Image depth) {
-    ParticleLighting lighting{.scene_depth = depth};
-    if (inputs.scattering) {
-        lighting.scattering = {inputs.scattering->accumulated, inputs.scattering->in_scattered,
-                               inputs.scattering->parameters};
-    }
-    if (inputs.sun) {
-        lighting.sun_shadow = {inputs.sun->cascades, inputs.sun->parameters};
-    }
-    if (inputs.lights) {
-        lighting.lights = inputs.lights->lights;
-    }
-    return lighting;
-}
-
 } // namespace
 
 tl::expected<void, Error> Renderer::declare_particles(rg::GraphBuilder& graph, rg::Blackboard&) {
@@ -36,15 +21,10 @@ tl::expected<void, Error> Renderer::declare_particles(rg::GraphBuilder& graph, r
         return {};
     }
     const Ambient ambient = settings_.ambient.value_or(default_ambient(lights_.sun));
-    const ParticleView view{.view_from_render = glm::mat4(frame_.view.view_from_render),
-                            .clip_from_view = glm::mat4(frame_.view.clip_from_view),
-                            .origin_m = frame_.view.origin_m,
-                            .time_s = frame_.view.time_s,
-                            .extent = frame_.view.size,
-                            .ambient_radiance = 0.5F * (ambient.up + ambient.down),
-                            .sun_illuminance_lux = lights_.sun ? lights_.sun->illuminance_lux : glm::vec3(0.0F),
-                            .light_count = static_cast<std::uint32_t>(lights_.local.size())};
-    auto draws = particles_->declare(graph, view, frame_.lists.transparent_depths_m, frame_.view.frame_slot);
+    const ParticleLight light{.ambient_radiance = 0.5F * (ambient.up + ambient.down),
+                              .sun_illuminance_lux = lights_.sun ? lights_.sun->illuminance_lux : glm::vec3(0.0F),
+                              .light_count = static_cast<std::uint32_t>(lights_.local.size())};
+    auto draws = particles_->declare(graph, frame_.view, light, frame_.lists.transparent_depths_m);
     if (!draws) {
         return tl::unexpected(draws.error());
     }
@@ -83,7 +63,10 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
         }
     }
     SceneImages& images = *blackboard.find<SceneImages>();
-    const ParticleLighting lighting = lighting_of(inputs, images.depth);
+    const ParticleSurroundings surroundings{.scene_depth = images.depth,
+                                            .scattering = inputs.scattering,
+                                            .sun_shadow = inputs.sun,
+                                            .lights = inputs.lights};
     rg::PassBuilder pass = graph.add_pass("transparents", rg::PassKind::graphics);
     pass.modifies(images.color, rg::Access::color_attachment).reads(images.depth, rg::Access::depth_attachment);
     if (!transparents.empty()) {
@@ -91,15 +74,15 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
         inputs.declare(pass);
     }
     if (frame_.particles) {
-        particles_->add_reads(pass, *frame_.particles, lighting);
+        particles_->add_reads(pass, *frame_.particles, surroundings);
     }
     pass.executes([transparents = std::move(transparents), layout, inputs, geometry = frame_.geometry,
-                   particles = frame_.particles, system = particles_, lighting](rg::PassContext& ctx) {
+                   particles = frame_.particles, system = particles_, surroundings](rg::PassContext& ctx) {
         DrawRecorder recorder(ctx, layout, geometry, true);
         bool inputs_bound = false;
         const auto draw_particles = [&](std::size_t interval) {
             if (particles) {
-                system->draw(ctx, *particles, lighting, static_cast<std::uint32_t>(interval));
+                system->draw(ctx, *particles, surroundings, static_cast<std::uint32_t>(interval));
                 recorder.forget();
                 inputs_bound = false;
             }

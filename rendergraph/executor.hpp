@@ -144,7 +144,7 @@ public:
     [[nodiscard]] static tl::expected<Executor, ExecuteError> create(ExecutorInfo info);
     Executor(Executor&&) noexcept;
     Executor& operator=(Executor&&) noexcept;
-    ~Executor(); ///< waits for the frames in flight
+    ~Executor(); ///< waits for its queues, so they must not be in use by another thread
 
     /// The driver's own requirements for every transient and history resource, as compile wants them.
     [[nodiscard]] MemoryRequirements memory_requirements(const GraphDesc& graph) const;

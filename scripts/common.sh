@@ -6,6 +6,7 @@ elapsed() {
     seconds=$(($(date +%s) - started))
     printf '%d:%02d min' $((seconds / 60)) $((seconds % 60))
 }
+run_with="" # words before what is built and run, for the sanitisers
 say() { printf '\n== %s\n' "$*"; }
 
 # configure PRESET [OPTION ...]
@@ -26,5 +27,6 @@ build() {
     preset=$1
     shift
     say "build $preset"
-    cmake --build --preset "$preset" "$@"
+    # shellcheck disable=SC2086 # a list of words
+    $run_with cmake --build --preset "$preset" "$@"
 }

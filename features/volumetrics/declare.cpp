@@ -3,6 +3,7 @@
 #include <array>
 
 #include "features/volumetrics/feature_state.hpp"
+#include "shaders/common/lights.h"
 
 namespace tyndall::volumetrics {
 namespace {
@@ -68,19 +69,24 @@ void Feature::State::declare_clustering(rg::GraphBuilder& graph) {
                                                       {.size_bytes = sizeof(gpu::LightClusters)}, {.read_only = true});
     import_bindings.push_back({.resource = parameters.resource, .buffer = slot.clusters});
     rg::Buffer masks = graph.create_buffer("light cluster masks", {.size_bytes = VkDeviceSize{words} * 4});
-    const Dispatch dispatch = covering(frame->light_clustering, {64, 1, 1}, words, 1, 1);
+    const std::uint32_t compact_count = std::min<std::uint32_t>(c.grid.w, TYNDALL_COMPACT_LIGHT_COUNT);
+    rg::Buffer compact =
+        graph.create_buffer("compact lights", {.size_bytes = sizeof(gpu::GpuLight) * TYNDALL_COMPACT_LIGHT_COUNT});
+    const Dispatch dispatch = covering(frame->light_clustering, {64, 1, 1}, std::max(words, compact_count), 1, 1);
     auto pass = graph.add_pass("light clustering", PassKind::compute);
     pass.on_queue(wish())
         .reads(frame->parameter_buffer, Access::uniform_compute)
         .reads(parameters, Access::uniform_compute)
         .reads(frame->light_buffer, Access::storage_compute)
-        .writes(masks, Access::storage_compute);
+        .writes(masks, Access::storage_compute)
+        .writes(compact, Access::storage_compute);
     pass.executes([=, volume = frame->parameter_buffer, lights = frame->light_buffer](PassContext& ctx) {
         run(ctx, dispatch,
             std::array{ctx.uniform(0, volume), ctx.uniform(1, parameters), ctx.storage(2, lights),
-                       ctx.storage(3, masks)});
+                       ctx.storage(3, masks), ctx.storage(4, compact)});
     });
     frame->clusters = ClusterResources{masks, parameters};
+    frame->compact_lights = compact;
 }
 
 tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, const ShadowResources& shadow) {
@@ -165,18 +171,20 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     if (variant.sun_shadow) {
         pass.reads(frame->stages.esm, Access::sampled_compute).reads(shadow.parameters, Access::uniform_compute);
     }
+    const bool compact = variant.lights == LocalLights::clustered_compact;
+    const rg::Buffer light_buffer = compact ? frame->compact_lights : frame->light_buffer;
     if (variant.lights != LocalLights::none) {
-        pass.reads(frame->light_buffer, Access::storage_compute);
+        pass.reads(light_buffer, compact ? Access::uniform_compute : Access::storage_compute);
     }
-    if (variant.lights == LocalLights::clustered) {
+    if (is_clustered(variant.lights)) {
         pass.reads(frame->clusters->parameters, Access::uniform_compute)
             .reads(frame->clusters->masks, Access::storage_compute);
     }
     pass.writes(in_scattered, Access::storage_compute);
     pass.executes([=, dispatch = covering(*program, group, grid.width, grid.height, grid.slices),
                    parameters = frame->parameter_buffer, esm = frame->stages.esm, cascades = shadow.parameters,
-                   lights = frame->light_buffer, clusters = frame->clusters.value_or(ClusterResources{}),
-                   cold = frame->cold, linear_sampler = linear, nearest_sampler = nearest](PassContext& ctx) {
+                   clusters = frame->clusters.value_or(ClusterResources{}), cold = frame->cold, linear_sampler = linear,
+                   nearest_sampler = nearest](PassContext& ctx) {
         std::array<Binding, 8> bindings{};
         std::size_t count = 0;
         bindings[count++] = ctx.uniform(0, parameters);
@@ -186,9 +194,9 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
             bindings[count++] = ctx.uniform(3, cascades);
         }
         if (variant.lights != LocalLights::none) {
-            bindings[count++] = ctx.storage(4, lights);
+            bindings[count++] = compact ? ctx.uniform(4, light_buffer) : ctx.storage(4, light_buffer);
         }
-        if (variant.lights == LocalLights::clustered) {
+        if (is_clustered(variant.lights)) {
             bindings[count++] = ctx.uniform(5, clusters.parameters);
             bindings[count++] = ctx.storage(6, clusters.masks);
         }

@@ -102,7 +102,7 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
         return tl::unexpected(density.error());
     }
     frame->density_injection = *density;
-    if (frame->lights == LocalLights::clustered) {
+    if (is_clustered(frame->lights)) {
         auto clustering = pipelines.compute(light_clustering_shader(), {64, 1, 1});
         if (!clustering) {
             return tl::unexpected(clustering.error());
@@ -166,7 +166,8 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
     frame.sun_shadow = shines(inputs) && inputs.sun->casts_shadows;
     if (inputs.light_count > 0) {
         const bool cluster = inputs.settings.clusters && inputs.light_count > 1;
-        frame.lights = cluster ? LocalLights::clustered : LocalLights::all;
+        const bool compact = inputs.light_count <= TYNDALL_COMPACT_LIGHT_COUNT;
+        frame.lights = !cluster ? LocalLights::all : compact ? LocalLights::clustered_compact : LocalLights::clustered;
     }
     state.frame = std::move(frame);
     if (auto made = state.prepare_programs(); !made) {
@@ -201,7 +202,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
         state.omit("density noise", "its amplitude is 0");
     }
     state.declare_density(graph);
-    if (frame.lights == LocalLights::clustered) {
+    if (is_clustered(frame.lights)) {
         state.declare_clustering(graph);
     } else if (frame.lights == LocalLights::none) {
         state.omit("light clustering", "there is no local light");

@@ -22,6 +22,7 @@ struct FrameState {
 
     rg::Buffer parameter_buffer;
     rg::Buffer light_buffer;
+    rg::Buffer compact_lights; ///< its first lights, for binding as uniforms
     std::optional<ClusterResources> clusters;
     std::optional<VolumeResources> volume;
     StageResources stages;
@@ -60,6 +61,10 @@ struct Feature::State {
     std::vector<rg::ImportBinding> import_bindings;
     std::vector<Omission> omissions;
 };
+
+[[nodiscard]] inline bool is_clustered(LocalLights lights) {
+    return lights >= LocalLights::clustered;
+}
 
 /// Long rows run best on processors that vectorise along x: a multiple of 8, at most 128 (the smallest limit that
 /// Vulkan allows), splitting `width` evenly.

@@ -14,11 +14,6 @@ gpu::DepthLaw depth_law(const GridSettings& grid) {
     return {glm::vec4(grid.range_m, grid.shape_m, log_ratio, 1.0 / log_ratio)};
 }
 
-/// phi1(-y) = (e^y - 1) / y.
-float phi1_of_minus(double y) {
-    return static_cast<float>(std::expm1(y) / y);
-}
-
 float fraction(double value) {
     return static_cast<float>(value - std::floor(value));
 }
@@ -90,11 +85,13 @@ gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& 
         volume.origin[i + 2] = static_cast<float>((-p[3][i] - w.constant) * inverse);
     }
     volume.law = depth_law(grid);
-    const double log_ratio = std::log1p(static_cast<double>(grid.range_m) / static_cast<double>(grid.shape_m));
-    volume.grid = glm::vec4(grid.width, grid.height, grid.slices, phi1_of_minus(log_ratio / grid.slices));
+    volume.grid = glm::vec4(grid.width, grid.height, grid.slices, 0.0F);
+    // z at t = i / N is s (e^(i y) - 1).
+    const double shape_m = static_cast<double>(grid.shape_m);
+    const double y = std::log1p(static_cast<double>(grid.range_m) / shape_m) / grid.slices;
+    volume.slice = glm::vec4(shape_m * std::expm1(y), shape_m * std::expm1(0.5 * y), std::exp(y), std::exp(-y));
     volume.area = glm::vec4(1.0F, 1.0F, 0.0F, 0.0F);
-    const double length_ratio = std::exp(log_ratio / grid.slices);
-    volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, length_ratio, 1.0 / length_ratio);
+    volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, y / std::expm1(y), 0.0F);
     return volume;
 }
 

@@ -15,24 +15,32 @@
 #include "spirv/froxel_lighting_fp16_s0_l1_h1.h"
 #include "spirv/froxel_lighting_fp16_s0_l2_h0.h"
 #include "spirv/froxel_lighting_fp16_s0_l2_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l3_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l3_h1.h"
 #include "spirv/froxel_lighting_fp16_s1_l0_h0.h"
 #include "spirv/froxel_lighting_fp16_s1_l0_h1.h"
 #include "spirv/froxel_lighting_fp16_s1_l1_h0.h"
 #include "spirv/froxel_lighting_fp16_s1_l1_h1.h"
 #include "spirv/froxel_lighting_fp16_s1_l2_h0.h"
 #include "spirv/froxel_lighting_fp16_s1_l2_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l3_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l3_h1.h"
 #include "spirv/froxel_lighting_fp32_s0_l0_h0.h"
 #include "spirv/froxel_lighting_fp32_s0_l0_h1.h"
 #include "spirv/froxel_lighting_fp32_s0_l1_h0.h"
 #include "spirv/froxel_lighting_fp32_s0_l1_h1.h"
 #include "spirv/froxel_lighting_fp32_s0_l2_h0.h"
 #include "spirv/froxel_lighting_fp32_s0_l2_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l3_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l3_h1.h"
 #include "spirv/froxel_lighting_fp32_s1_l0_h0.h"
 #include "spirv/froxel_lighting_fp32_s1_l0_h1.h"
 #include "spirv/froxel_lighting_fp32_s1_l1_h0.h"
 #include "spirv/froxel_lighting_fp32_s1_l1_h1.h"
 #include "spirv/froxel_lighting_fp32_s1_l2_h0.h"
 #include "spirv/froxel_lighting_fp32_s1_l2_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l3_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l3_h1.h"
 #include "spirv/full_screen.h"
 #include "spirv/light_clustering.h"
 
@@ -45,7 +53,8 @@ constexpr VkDescriptorType storage_image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType storage_buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
 constexpr ShaderBinding density_bindings[] = {{0, uniform}, {1, storage_image}};
-constexpr ShaderBinding clustering_bindings[] = {{0, uniform}, {1, uniform}, {2, storage_buffer}, {3, storage_buffer}};
+constexpr ShaderBinding clustering_bindings[] = {
+    {0, uniform}, {1, uniform}, {2, storage_buffer}, {3, storage_buffer}, {4, storage_buffer}};
 constexpr ShaderBinding downsample_bindings[] = {{0, uniform}, {1, sampled}, {2, storage_image}};
 constexpr ShaderBinding blur_bindings[] = {{0, storage_image}, {1, storage_image}};
 constexpr ShaderBinding accumulation_bindings[] = {
@@ -63,7 +72,7 @@ constexpr bool has_binding(std::uint32_t binding, bool sun_shadow, std::uint32_t
     case 3: return sun_shadow;
     case 4: return lights >= 1;
     case 5:
-    case 6: return lights == 2;
+    case 6: return lights >= 2;
     case 7: return history;
     default: return true;
     }
@@ -74,13 +83,17 @@ struct LightingBindings {
     std::size_t count = 0;
 };
 
-/// By variant without the storage format: (sun_shadow * 3 + lights) * 2 + history.
-constexpr std::array<LightingBindings, 12> lighting_binding_lists = [] {
-    std::array<LightingBindings, 12> lists{};
+/// By variant without the storage format: (sun_shadow * 4 + lights) * 2 + history.
+constexpr std::array<LightingBindings, 16> lighting_binding_lists = [] {
+    std::array<LightingBindings, 16> lists{};
     for (std::uint32_t i = 0; i < lists.size(); ++i) {
         for (const ShaderBinding& binding : lighting_bindings) {
-            if (has_binding(binding.binding, i / 6 == 1, (i / 2) % 3, i % 2 == 1)) {
-                lists[i].list[lists[i].count++] = binding;
+            if (has_binding(binding.binding, i / 8 == 1, (i / 2) % 4, i % 2 == 1)) {
+                lists[i].list[lists[i].count] = binding;
+                if (binding.binding == 4 && (i / 2) % 4 == 3) {
+                    lists[i].list[lists[i].count].type = uniform;
+                }
+                ++lists[i].count;
             }
         }
     }
@@ -91,12 +104,15 @@ constexpr std::array<LightingBindings, 12> lighting_binding_lists = [] {
 const std::span<const std::uint32_t> lighting_code[] = {
     froxel_lighting_fp16_s0_l0_h0, froxel_lighting_fp16_s0_l0_h1, froxel_lighting_fp16_s0_l1_h0,
     froxel_lighting_fp16_s0_l1_h1, froxel_lighting_fp16_s0_l2_h0, froxel_lighting_fp16_s0_l2_h1,
-    froxel_lighting_fp16_s1_l0_h0, froxel_lighting_fp16_s1_l0_h1, froxel_lighting_fp16_s1_l1_h0,
-    froxel_lighting_fp16_s1_l1_h1, froxel_lighting_fp16_s1_l2_h0, froxel_lighting_fp16_s1_l2_h1,
-    froxel_lighting_fp32_s0_l0_h0, froxel_lighting_fp32_s0_l0_h1, froxel_lighting_fp32_s0_l1_h0,
-    froxel_lighting_fp32_s0_l1_h1, froxel_lighting_fp32_s0_l2_h0, froxel_lighting_fp32_s0_l2_h1,
+    froxel_lighting_fp16_s0_l3_h0, froxel_lighting_fp16_s0_l3_h1, froxel_lighting_fp16_s1_l0_h0,
+    froxel_lighting_fp16_s1_l0_h1, froxel_lighting_fp16_s1_l1_h0, froxel_lighting_fp16_s1_l1_h1,
+    froxel_lighting_fp16_s1_l2_h0, froxel_lighting_fp16_s1_l2_h1, froxel_lighting_fp16_s1_l3_h0,
+    froxel_lighting_fp16_s1_l3_h1, froxel_lighting_fp32_s0_l0_h0, froxel_lighting_fp32_s0_l0_h1,
+    froxel_lighting_fp32_s0_l1_h0, froxel_lighting_fp32_s0_l1_h1, froxel_lighting_fp32_s0_l2_h0,
+    froxel_lighting_fp32_s0_l2_h1, froxel_lighting_fp32_s0_l3_h0, froxel_lighting_fp32_s0_l3_h1,
     froxel_lighting_fp32_s1_l0_h0, froxel_lighting_fp32_s1_l0_h1, froxel_lighting_fp32_s1_l1_h0,
     froxel_lighting_fp32_s1_l1_h1, froxel_lighting_fp32_s1_l2_h0, froxel_lighting_fp32_s1_l2_h1,
+    froxel_lighting_fp32_s1_l3_h0, froxel_lighting_fp32_s1_l3_h1,
 };
 
 } // namespace
@@ -121,7 +137,7 @@ ShaderCode esm_blur_shader() {
 
 ShaderCode froxel_lighting_shader(const LightingVariant& variant) {
     const std::size_t index =
-        (static_cast<std::size_t>(variant.sun_shadow) * 3 + static_cast<std::size_t>(variant.lights)) * 2 +
+        (static_cast<std::size_t>(variant.sun_shadow) * 4 + static_cast<std::size_t>(variant.lights)) * 2 +
         static_cast<std::size_t>(variant.history);
     const LightingBindings& bindings = lighting_binding_lists[index];
     const std::size_t format = variant.storage == StorageFormat::fp16 ? 0 : lighting_binding_lists.size();

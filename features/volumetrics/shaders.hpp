@@ -22,7 +22,8 @@ struct ShaderCode {
     std::uint32_t push_constant_bytes = 0;
 };
 
-enum class LocalLights : std::uint8_t { none, all, clustered };
+/// As LIGHTS in froxel_lighting.comp.
+enum class LocalLights : std::uint8_t { none, all, clustered, clustered_compact };
 
 /// What froxel lighting is specialised to.
 struct LightingVariant {

@@ -8,15 +8,15 @@
 const float smallest_light_radius_m = 0.005;
 
 // The fade to exactly 0 at the range, as KHR_lights_punctual recommends: 1 - (d / range)^4.
-float light_window(GpuLight light, float distance_squared) {
-    float x = distance_squared / (light.position_range.w * light.position_range.w);
+float light_window(float range_m, float distance_squared) {
+    float x = distance_squared / (range_m * range_m);
     return clamp(1.0 - x * x, 0.0, 1.0);
 }
 
-// KHR_lights_punctual's spot attenuation; exactly 0 outside the outer cone, 1 for point lights.
-float light_cone(GpuLight light, vec3 to_light) {
-    float a = clamp(dot(-to_light, light.direction_radius.xyz) * light.cone.x + light.cone.y, 0.0, 1.0);
-    return light.intensity_type.w > 0.5 ? a * a : 1.0;
+// KHR_lights_punctual's spot attenuation by angle scale and offset; exactly 0 outside the outer cone.
+float spot_cone(vec3 direction, vec2 scale_offset, vec3 to_light) {
+    float a = clamp(dot(-to_light, direction) * scale_offset.x + scale_offset.y, 0.0, 1.0);
+    return a * a;
 }
 
 // Irradiance (lux, rgb) at `position` on a surface that faces the light: candela / d^2, windowed, within the cone.
@@ -26,7 +26,10 @@ vec3 light_irradiance_normal(GpuLight light, vec3 position, out vec3 to_light) {
     float distance_squared = dot(d, d);
     to_light = d * inversesqrt(max(distance_squared, 1e-20));
     float radius = max(light.direction_radius.w, smallest_light_radius_m);
-    float fade = light_window(light, distance_squared) * light_cone(light, to_light);
+    float fade = light_window(light.position_range.w, distance_squared);
+    if (light.intensity_type.w > 0.5) {
+        fade *= spot_cone(light.direction_radius.xyz, light.cone.xy, to_light);
+    }
     return light.intensity_type.rgb * (fade / max(distance_squared, radius * radius));
 }
 

@@ -3,10 +3,13 @@
 #define TYNDALL_SHADERS_COMMON_PHI1_GLSL
 
 // Below 0.25 by its Taylor series (first term left out: x^6 / 5040, 5e-8 of the value), where 1 - e^-x cancels.
-float phi1(float x) {
+// `attenuation` is e^-x, for callers that have it.
+float phi1(float x, float attenuation) {
     float series =
         1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0)))));
-    return abs(x) < 0.25 ? series : (1.0 - exp(-x)) / x;
+    return abs(x) < 0.25 ? series : (1.0 - attenuation) / x;
 }
+
+float phi1(float x) { return phi1(x, exp(-x)); }
 
 #endif

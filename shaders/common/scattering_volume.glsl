@@ -37,7 +37,7 @@ vec2 texture_uv(ScatteringVolume volume, vec2 uv) {
 // `direction` 1 (behind) or -1 (in front): half the relative change, positive where density falls away from the eye,
 // limited so that optical depth stays monotone.
 float density_tilt(ScatteringVolume volume, float x, float x_neighbour, float direction) {
-    float length_ratio = direction > 0.0 ? volume.scale.z : volume.scale.w; // of the neighbour to the slice
+    float length_ratio = direction > 0.0 ? volume.slice.z : volume.slice.w; // of the neighbour to the slice
     float slope = direction * (x_neighbour / length_ratio - x) * 2.0 / (1.0 + length_ratio);
     return x > 0.0 ? clamp(-0.5 * slope / x, -0.9, 0.9) : 0.0;
 }
@@ -56,7 +56,7 @@ void scattering_lookup(ScatteringVolume volume, sampler2DArray accumulated, vec2
     float position = min(t_from_depth(volume.law, depth_m), 1.0) * slices;
     float k = min(floor(position), slices - 1.0);
     float u = position - k;
-    float f = u * phi1(-u * volume.law.range_shape.z / slices) / volume.grid.w; // (z - z_k) / (z_{k+1} - z_k)
+    float f = u * phi1(-u * volume.law.range_shape.z / slices) * volume.scale.z; // (z - z_k) / (z_{k+1} - z_k)
 
     vec2 p = texture_uv(volume, uv);
     float direction = k > 0.0 ? -1.0 : 1.0;

@@ -15,10 +15,11 @@ TYNDALL_INTEROP_BEGIN
 struct ScatteringVolume {
     vec4 slope;  // xy scale, zw offset
     vec4 origin; // xy scale, zw offset, m
-    vec4 grid;   // x width, y height, z slices N, w: phi1(-ln(1 + R / s) / N), for look-ups between boundaries
+    vec4 grid;   // x width, y height, z slices N; w 0
+    vec4 slice;  // x: depth of the first slice, m; y: depth at its middle t, m; z: length of a slice over that of the one
+                 // before it, (1 + R / s)^(1 / N); w: 1 / z
     vec4 area;   // xy: rendered part of the allocated grid in x and y, 1 where all of it is; zw 0
-    vec4 scale;  // x: stored radiance is radiance times this, y: its reciprocal; z: length of a slice over that of the
-                 // slice before it, (1 + R / s)^(1 / N); w: 1 / z
+    vec4 scale;  // x: stored radiance is radiance times this; y: its reciprocal; z: 1 / phi1(-ln(1 + R / s) / N); w 0
     DepthLaw law;
 };
 

@@ -1,7 +1,7 @@
 // Density and in-scattered radiance -> radiance toward the eye (rgb) and optical depth (a) at the N + 1 slice
 // boundaries, the eye's own (0, 0) included. Serial along each column.
 //
-// Per slice of ray length dt: x = sigma_t dt,  L += T dt j phi1(x),  T = e^-tau,  tau += x: exact for a constant
+// Per slice of ray length dt: x = sigma_t dt,  L += T dt j phi1(x),  T *= e^-x,  tau += x: exact for a constant
 // medium, no division by sigma, and a convex combination, so bounded by the brightest source whatever x.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -23,22 +23,22 @@ void main() {
     if (any(greaterThanEqual(column, grid.xy))) {
         return;
     }
-    float stretch = column_stretch(u.volume, uv_of_column(u.volume, vec2(column)));
+    vec2 uv = uv_of_column(u.volume, vec2(column));
+    // Each slice is longer than the one before it by the same ratio.
+    float dt = u.volume.slice.x * column_stretch(u.volume, uv) * u.density_scale.y;
     vec3 radiance = vec3(0.0);
     float tau = 0.0;
     float transmittance = 1.0;
-    float near_m = 0.0;
     imageStore(accumulated, ivec3(column, 0), vec4(0.0));
     for (int k = 0; k < grid.z; ++k) {
-        float far_m = boundary_depth(u.volume, float(k + 1));
-        float dt = (far_m - near_m) * stretch * u.density_scale.y;
         vec4 medium = imageLoad(density, ivec3(column, k));
         vec3 source = medium.rgb * imageLoad(in_scattered, ivec3(column, k)).rgb;
         float x = medium.a * dt;
-        radiance += source * (transmittance * dt * phi1(x));
+        float attenuation = exp(-x);
+        radiance += source * (transmittance * dt * phi1(x, attenuation));
         tau += x;
-        transmittance = exp(-tau);
+        transmittance *= attenuation;
         imageStore(accumulated, ivec3(column, k + 1), storable(vec4(radiance, tau)));
-        near_m = far_m;
+        dt *= u.volume.slice.z;
     }
 }

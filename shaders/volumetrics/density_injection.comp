@@ -44,7 +44,7 @@ void main() {
     }
     vec2 uv = uv_of_column(u.volume, vec2(froxel.xy));
     float near_m = boundary_depth(u.volume, float(froxel.z));
-    float far_m = boundary_depth(u.volume, float(froxel.z) + 1.0);
+    float far_m = near_m + slice_depth(u.volume, near_m);
 
     vec4 medium = vec4(0.0);
     if (has_homogeneous) {

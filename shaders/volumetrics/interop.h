@@ -31,6 +31,9 @@ struct VolumetricParameters {
     uvec4 frame;          // x: frames since the last cut; y: lights; zw 0
 };
 
+// Lights that fit the smallest uniform buffer that Vulkan allows, 16 KiB.
+#define TYNDALL_COMPACT_LIGHT_COUNT 256
+
 TYNDALL_INTEROP_END
 
 #endif

@@ -14,6 +14,7 @@ layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1) uniform ClusterParameters { LightClusters clusters; };
 layout(set = 0, binding = 2, std430) readonly restrict buffer Lights { GpuLight lights[]; };
 layout(set = 0, binding = 3, std430) writeonly restrict buffer Masks { uint masks[]; };
+layout(set = 0, binding = 4, std430) writeonly restrict buffer CompactLights { GpuLight compact_lights[]; };
 
 struct ClusterColumn {
     vec2 uv_min;
@@ -68,8 +69,11 @@ bool light_reaches(GpuLight light, ClusterColumn column, float near_m, float far
     return cone_meets_sphere(centre, axis, cos_angle, range, 0.5 * (low + high), radius);
 }
 
-// x: word of the mask, y: cluster within its slab, z: slab.
+// One invocation a word of a mask; the first ones also copy the lights for the passes that read them as uniforms.
 void main() {
+    if (gl_GlobalInvocationID.x < min(clusters.grid.w, TYNDALL_COMPACT_LIGHT_COUNT)) {
+        compact_lights[gl_GlobalInvocationID.x] = lights[gl_GlobalInvocationID.x];
+    }
     uint word = gl_GlobalInvocationID.x % clusters.block.w;
     uint cluster = gl_GlobalInvocationID.x / clusters.block.w;
     uvec3 counts = clusters.counts.xyz;

@@ -12,28 +12,38 @@ struct RaySegment {
     float ahead_m;  // and away from it
 };
 
-// In-scattered radiance per scattering coefficient from one light. 1 / d^2 is averaged over the segment exactly (the
-// integral is a difference of arc tangents): sampled at a point it would be several times too bright beside the light and
-// flicker as either moves. Window, cone and phase are taken at the sample. Exactly 0 beyond the light's range.
-vec3 scattered_from_light(GpuLight light, RaySegment segment, float g) {
-    vec3 d = light.position_range.xyz - segment.position;
-    float distance_squared = dot(d, d);
-    float window = light_window(light, distance_squared);
-    if (window <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 to_light = d * inversesqrt(max(distance_squared, 1e-20));
+// Mean of 1 / d^2 over the segment, exact (the integral is a difference of arc tangents): sampled at a point it would be
+// several times too bright beside the light and flicker as either moves. `d` leads from the sample to the light.
+float mean_inverse_square(RaySegment segment, vec3 d, float radius_m) {
     float along = -dot(d, segment.to_eye); // of the light's foot on the ray, from the sample
     vec3 offset = d + along * segment.to_eye;
-    float radius = max(light.direction_radius.w, smallest_light_radius_m);
-    float h_squared = max(dot(offset, offset), radius * radius);
+    float h_squared = max(dot(offset, offset), radius_m * radius_m);
     float h = sqrt(h_squared);
     float a = -segment.behind_m - along;
     float b = segment.ahead_m - along;
     float length_m = max(b - a, 1e-6);
-    float mean_inverse_square = atan(h * length_m, h_squared + a * b) / (h * length_m);
-    float phase = henyey_greenstein(g, -to_light, segment.to_eye);
-    return light.intensity_type.rgb * (window * light_cone(light, to_light) * phase * mean_inverse_square);
+    return atan(h * length_m, h_squared + a * b) / (h * length_m);
 }
+
+// In-scattered radiance per scattering coefficient from light `index`. Window, cone and phase are taken at the sample.
+// Exactly 0 beyond the light's range. A macro, since a buffer cannot be passed to a function: members are fetched when
+// they are needed, and most lights end at their range, most others are no spots.
+#define ADD_SCATTERED_FROM_LIGHT(lights, index, segment, g, sum)                                                       \
+    {                                                                                                                  \
+        vec4 position_range = lights[index].position_range;                                                            \
+        vec3 d = position_range.xyz - segment.position;                                                                \
+        float distance_squared = dot(d, d);                                                                            \
+        float fade = light_window(position_range.w, distance_squared);                                                 \
+        if (fade > 0.0) {                                                                                              \
+            vec4 intensity_type = lights[index].intensity_type;                                                        \
+            vec3 to_light = d * inversesqrt(max(distance_squared, 1e-20));                                             \
+            if (intensity_type.w > 0.5) {                                                                              \
+                fade *= spot_cone(lights[index].direction_radius.xyz, lights[index].cone.xy, to_light);                \
+            }                                                                                                          \
+            float radius_m = max(lights[index].direction_radius.w, smallest_light_radius_m);                           \
+            float phase = henyey_greenstein(g, -to_light, segment.to_eye);                                             \
+            sum += intensity_type.rgb * (fade * phase * mean_inverse_square(segment, d, radius_m));                    \
+        }                                                                                                              \
+    }
 
 #endif

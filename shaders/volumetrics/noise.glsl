@@ -2,24 +2,38 @@
 #ifndef TYNDALL_SHADERS_VOLUMETRICS_NOISE_GLSL
 #define TYNDALL_SHADERS_VOLUMETRICS_NOISE_GLSL
 
-#include "volumetrics/random.glsl"
+// One word of hash per lattice point from words per axis: three multiplications, where a hash of three words needs nine.
+uint lattice_hash(uint x, uint y, uint z) {
+    uint h = x ^ y ^ z;
+    h ^= h >> 15u;
+    h *= 0x2c1b3c6du;
+    h ^= h >> 12u;
+    return h;
+}
 
-// Contribution of one lattice point: its gradient, of components in [-1, 1), along `offset`.
-float lattice(ivec3 cell, vec3 offset) {
-    uvec3 bits = hash3(uvec3(cell & 255));
-    return dot(vec3(ivec3(bits)) * (1.0 / 2147483648.0), offset);
+// Contribution of one lattice point: its gradient, of components in (-1, 1), along `offset`.
+float lattice(uint hash, float x, float y, float z) {
+    vec3 gradient = vec3(ivec3(hash & 1023u, (hash >> 10u) & 1023u, (hash >> 20u) & 1023u)) * (1.0 / 512.0) - (1023.0 / 1024.0);
+    return gradient.x * x + gradient.y * y + gradient.z * z;
 }
 
 // Mean 0, within [-1, 1]; p in cells.
 float gradient_noise(vec3 p) {
     vec3 base = floor(p);
-    ivec3 c = ivec3(base);
-    vec3 f = p - base;
-    vec3 w = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
-    float x00 = mix(lattice(c, f), lattice(c + ivec3(1, 0, 0), f - vec3(1, 0, 0)), w.x);
-    float x10 = mix(lattice(c + ivec3(0, 1, 0), f - vec3(0, 1, 0)), lattice(c + ivec3(1, 1, 0), f - vec3(1, 1, 0)), w.x);
-    float x01 = mix(lattice(c + ivec3(0, 0, 1), f - vec3(0, 0, 1)), lattice(c + ivec3(1, 0, 1), f - vec3(1, 0, 1)), w.x);
-    float x11 = mix(lattice(c + ivec3(0, 1, 1), f - vec3(0, 1, 1)), lattice(c + ivec3(1, 1, 1), f - vec3(1, 1, 1)), w.x);
+    vec3 a = p - base;
+    vec3 b = a - 1.0;
+    uvec3 cell = uvec3(ivec3(base));
+    uvec3 h0 = (cell & 255u) * uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
+    uvec3 h1 = ((cell + 1u) & 255u) * uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
+    vec3 w = a * a * a * (a * (a * 6.0 - 15.0) + 10.0);
+    float x00 = mix(lattice(lattice_hash(h0.x, h0.y, h0.z), a.x, a.y, a.z),
+                    lattice(lattice_hash(h1.x, h0.y, h0.z), b.x, a.y, a.z), w.x);
+    float x10 = mix(lattice(lattice_hash(h0.x, h1.y, h0.z), a.x, b.y, a.z),
+                    lattice(lattice_hash(h1.x, h1.y, h0.z), b.x, b.y, a.z), w.x);
+    float x01 = mix(lattice(lattice_hash(h0.x, h0.y, h1.z), a.x, a.y, b.z),
+                    lattice(lattice_hash(h1.x, h0.y, h1.z), b.x, a.y, b.z), w.x);
+    float x11 = mix(lattice(lattice_hash(h0.x, h1.y, h1.z), a.x, b.y, b.z),
+                    lattice(lattice_hash(h1.x, h1.y, h1.z), b.x, b.y, b.z), w.x);
     return clamp(1.25 * mix(mix(x00, x10, w.y), mix(x01, x11, w.y), w.z), -1.0, 1.0);
 }
 
