@@ -154,8 +154,14 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
                                   .history = inputs.settings.temporal.enabled};
     const GridSettings& grid = inputs.settings.grid;
     const GroupShape group = row_group(grid.width);
-    const std::uint32_t has_sun = inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F) ? 1 : 0;
-    const auto program = pipelines.compute(froxel_lighting_shader(variant), group, std::array{has_sun});
+    // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
+    const std::array<std::uint32_t, 4> constants{
+        inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
+        variant.sun_shadow ? graph.describe(frame->stages.esm)->layers : 0,
+        is_perspective(inputs.camera),
+        variant.history && frame->camera_stands,
+    };
+    const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
     if (!program) {
         return tl::unexpected(program.error());
     }

@@ -94,8 +94,9 @@ rg::QueueWish Feature::State::wish() const {
 tl::expected<void, Error> Feature::State::prepare_programs() {
     const GridSettings& grid = frame->inputs.settings.grid;
     const Medium& medium = frame->inputs.medium;
-    const std::array<std::uint32_t, 3> media{medium.homogeneous.extinction_per_m > 0.0F,
-                                             medium.height.extinction_per_m > 0.0F, medium.noise.amplitude > 0.0F};
+    const std::array<std::uint32_t, 4> media{medium.homogeneous.extinction_per_m > 0.0F,
+                                             medium.height.extinction_per_m > 0.0F, medium.noise.amplitude > 0.0F,
+                                             is_perspective(frame->inputs.camera)};
     auto density =
         pipelines.compute(density_injection_shader(frame->inputs.settings.storage), row_group(grid.width), media);
     if (!density) {
@@ -161,6 +162,7 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
     if (frame.cold) {
         state.before.reset();
     }
+    frame.camera_stands = camera_stands(inputs, state.before);
     frame.parameters = volumetric_parameters(inputs, state.before);
     frame.cluster_parameters = light_clusters(inputs.settings.grid, inputs.light_count, frame.parameters.volume.law);
     frame.sun_shadow = shines(inputs) && inputs.sun->casts_shadows;

@@ -14,6 +14,7 @@ struct FrameState {
     gpu::VolumetricParameters parameters{};
     gpu::LightClusters cluster_parameters{};
     bool cold = true;
+    bool camera_stands = false; ///< since the frame before
     bool sun_shadow = false;
     LocalLights lights = LocalLights::none;
     Program density_injection;

@@ -50,15 +50,12 @@ glm::vec4 noise_origin(const FrameInputs& frame) {
     return origin;
 }
 
-glm::vec4 temporal(const FrameInputs& frame, const std::optional<FrameMemory>& before, float radiance_scale) {
+glm::vec4 temporal_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before,
+                              float radiance_scale) {
     const float weight = frame.settings.temporal.new_frame_weight;
     glm::vec4 result(weight, std::ceil(1.0F / weight), 1.0F, 0.0F);
     if (before) {
         result.z = radiance_scale / before->volume.scale.x;
-        result.w = before->camera.view_from_render == frame.camera.view_from_render &&
-                           before->camera.origin_m == frame.camera.origin_m
-                       ? 1.0F
-                       : 0.0F;
     }
     return result;
 }
@@ -91,7 +88,7 @@ gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& 
     const double y = std::log1p(static_cast<double>(grid.range_m) / shape_m) / grid.slices;
     volume.slice = glm::vec4(shape_m * std::expm1(y), shape_m * std::expm1(0.5 * y), std::exp(y), std::exp(-y));
     volume.area = glm::vec4(1.0F, 1.0F, 0.0F, 0.0F);
-    volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, y / std::expm1(y), 0.0F);
+    volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, y / std::expm1(y), y);
     return volume;
 }
 
@@ -131,6 +128,15 @@ bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& bef
     return std::memcmp(&now, &before->volume, sizeof now) != 0;
 }
 
+bool camera_stands(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
+    return before && before->camera.view_from_render == frame.camera.view_from_render &&
+           before->camera.origin_m == frame.camera.origin_m;
+}
+
+bool is_perspective(const Camera& camera) {
+    return camera.clip_from_view[2][3] != 0.0;
+}
+
 gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
     const Medium& medium = frame.medium;
     const float radiance_scale = radiance_scale_for(frame);
@@ -141,6 +147,14 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     gpu::VolumetricParameters u{};
     u.volume = scattering_volume(frame.settings.grid, frame.camera, radiance_scale);
     u.render_from_view = glm::mat4(glm::dmat4(render_from_view));
+    const glm::dvec4 slope(u.volume.slope);
+    const glm::dvec4 origin(u.volume.origin);
+    u.ray_u = glm::vec4(render_from_view * glm::dvec3(slope.x, 0.0, 0.0), 0.0);
+    u.ray_v = glm::vec4(render_from_view * glm::dvec3(0.0, slope.y, 0.0), 0.0);
+    u.ray_0 = glm::vec4(render_from_view * glm::dvec3(slope.z, slope.w, -1.0), 0.0);
+    u.eye_u = glm::vec4(render_from_view * glm::dvec3(origin.x, 0.0, 0.0), 0.0);
+    u.eye_v = glm::vec4(render_from_view * glm::dvec3(0.0, origin.y, 0.0), 0.0);
+    u.eye_0 = glm::vec4(render_from_view * glm::dvec3(origin.z, origin.w, 0.0), 0.0);
     u.previous_view_from_view = glm::mat4(1.0F);
     if (before) {
         glm::dmat4 moved(render_from_view);
@@ -155,7 +169,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, 0.0F, 0.0F, 0.0F);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
     u.phase = glm::vec4(medium.phase_g, 0.0F, 0.0F, 0.0F);
-    u.temporal = temporal(frame, before, radiance_scale);
+    u.temporal = temporal_parameters(frame, before, radiance_scale);
     const std::uint32_t frames_since_cut = before ? before->frames_since_cut + 1 : 0;
     u.jitter = jitter(frame, frames_since_cut);
     u.ambient = glm::vec4(medium.ambient_radiance, 0.0F);

@@ -33,6 +33,11 @@ struct FrameMemory {
 /// differ.
 [[nodiscard]] bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& before);
 
+/// True when view and place are those of the frame before.
+[[nodiscard]] bool camera_stands(const FrameInputs& frame, const std::optional<FrameMemory>& before);
+
+[[nodiscard]] bool is_perspective(const Camera& camera);
+
 /// Everything but the sizes of the shadow maps (`esm_size`), which only the declared graph knows. `before` is empty on
 /// a cold start.
 [[nodiscard]] gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame,

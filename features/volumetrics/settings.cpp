@@ -68,7 +68,7 @@ tl::expected<void, Error> validate(const Settings& settings) {
     Checker check;
     check.in_range("grid.width", settings.grid.width, 2, 1024);
     check.in_range("grid.height", settings.grid.height, 2, 1024);
-    check.in_range("grid.slices", settings.grid.slices, 1, 512);
+    check.in_range("grid.slices", settings.grid.slices, 8, 512);
     check.in_range("grid.range_m", settings.grid.range_m, 1e-2, 1e7);
     const double range_m = settings.grid.range_m;
     // The lower end admits what single precision makes of the bound itself.

@@ -19,7 +19,8 @@ struct ScatteringVolume {
     vec4 slice;  // x: depth of the first slice, m; y: depth at its middle t, m; z: length of a slice over that of the one
                  // before it, (1 + R / s)^(1 / N); w: 1 / z
     vec4 area;   // xy: rendered part of the allocated grid in x and y, 1 where all of it is; zw 0
-    vec4 scale;  // x: stored radiance is radiance times this; y: its reciprocal; z: 1 / phi1(-ln(1 + R / s) / N); w 0
+    vec4 scale;  // x: stored radiance is radiance times this; y: its reciprocal; z: w / (e^w - 1);
+                 // w: ln(1 + R / s) / N, at most 1.2
     DepthLaw law;
 };
 

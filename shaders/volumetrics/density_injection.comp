@@ -12,6 +12,7 @@ layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
 layout(constant_id = 3) const bool has_homogeneous = true;
 layout(constant_id = 4) const bool has_height = true;
 layout(constant_id = 5) const bool has_noise = true;
+layout(constant_id = 6) const bool is_perspective = true;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D density;
@@ -43,6 +44,8 @@ void main() {
         return;
     }
     vec2 uv = uv_of_column(u.volume, vec2(froxel.xy));
+    vec3 ray = u.ray_u.xyz * uv.x + u.ray_v.xyz * uv.y + u.ray_0.xyz;
+    vec3 eye = is_perspective ? vec3(0.0) : u.eye_u.xyz * uv.x + u.eye_v.xyz * uv.y + u.eye_0.xyz;
     float near_m = boundary_depth(u.volume, float(froxel.z));
     float far_m = near_m + slice_depth(u.volume, near_m);
 
@@ -51,16 +54,15 @@ void main() {
         medium += vec4(u.homogeneous.rgb, 1.0) * u.homogeneous.w;
     }
     if (has_height) {
-        float height_near = (u.render_from_view * vec4(view_position(u.volume, uv, near_m), 1.0)).y - u.height_law.x;
-        float height_far = (u.render_from_view * vec4(view_position(u.volume, uv, far_m), 1.0)).y - u.height_law.x;
-        medium += vec4(u.height.rgb, 1.0) * (u.height.w * mean_height_density(height_near, height_far, u.height_law.y));
+        float eye_height = eye.y - u.height_law.x;
+        float mean = mean_height_density(eye_height + ray.y * near_m, eye_height + ray.y * far_m, u.height_law.y);
+        medium += vec4(u.height.rgb, 1.0) * (u.height.w * mean);
     }
     if (has_noise) {
         float middle_m = 0.5 * (near_m + far_m);
-        vec3 position = (u.render_from_view * vec4(view_position(u.volume, uv, middle_m), 1.0)).xyz;
         vec2 cell = (u.volume.slope.xy * middle_m + u.volume.origin.xy) / (grid.xy - 1.0);
-        float froxel_m = max(max(abs(cell.x), abs(cell.y)), (far_m - near_m) * column_stretch(u.volume, uv));
-        medium *= noise_factor(position, froxel_m);
+        float froxel_m = max(max(abs(cell.x), abs(cell.y)), (far_m - near_m) * length(ray));
+        medium *= noise_factor(eye + ray * middle_m, froxel_m);
     }
     imageStore(density, froxel, storable(medium));
 }

@@ -21,9 +21,4 @@ vec3 view_position(ScatteringVolume volume, vec2 uv, float depth_m) {
     return vec3(column_xy(volume, uv, depth_m), -depth_m);
 }
 
-// Unit direction of uv's ray, away from the eye.
-vec3 view_direction(ScatteringVolume volume, vec2 uv) {
-    return normalize(vec3(uv * volume.slope.xy + volume.slope.zw, -1.0));
-}
-
 #endif

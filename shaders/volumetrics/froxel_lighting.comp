@@ -18,6 +18,9 @@
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
 layout(constant_id = 3) const bool has_sun = true;
+layout(constant_id = 4) const uint cascade_count = 4;
+layout(constant_id = 5) const bool is_perspective = true;
+layout(constant_id = 6) const bool camera_stands = false; // since the frame before: history is not reprojected
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
@@ -48,7 +51,7 @@ layout(push_constant) uniform Push { uint history_valid; };
 vec3 sun_scattering(vec3 position, float depth_m, vec3 to_eye) {
     float visibility = 1.0;
 #if SUN_SHADOW
-    SUN_VISIBILITY(cascades, esm, u.esm_exponents, u.esm_size.xy, position, depth_m, visibility)
+    SUN_VISIBILITY(cascades, cascade_count, esm, u.esm_exponents, u.esm_size.xy, position, depth_m, visibility)
 #endif
     return u.sun_illuminance.rgb * (visibility * henyey_greenstein(u.phase.x, u.sun_direction.xyz, to_eye));
 }
@@ -77,7 +80,7 @@ vec3 local_scattering(uvec3 froxel, RaySegment segment) {
 // The frame before at this froxel's centre: rgb in this frame's scale, a: its age, 0 where there is none.
 vec4 fetch_history(ivec3 froxel, float near_m) {
     vec4 old;
-    if (u.temporal.w > 0.5) {
+    if (camera_stands) {
         old = texelFetch(history, froxel, 0);
     } else {
         vec3 now = view_position(u.volume, uv_of_column(u.volume, vec2(froxel.xy)), slice_middle(u.volume, near_m));
@@ -109,16 +112,19 @@ void main() {
     float far_m = near_m + slice_depth(u.volume, near_m);
     float depth_m = mix(near_m, far_m, place.z);
 
-    mat3 rotation = mat3(u.render_from_view);
-    vec3 position = rotation * view_position(u.volume, uv, depth_m);
-    vec3 to_eye = -(rotation * view_direction(u.volume, uv));
+    vec3 ray = u.ray_u.xyz * uv.x + u.ray_v.xyz * uv.y + u.ray_0.xyz;
+    float stretch = length(ray);
+    vec3 to_eye = ray * (-1.0 / stretch);
+    vec3 position = ray * depth_m;
+    if (!is_perspective) {
+        position += u.eye_u.xyz * uv.x + u.eye_v.xyz * uv.y + u.eye_0.xyz;
+    }
 
     vec3 sum = u.ambient.rgb;
     if (has_sun) {
         sum += sun_scattering(position, depth_m, to_eye);
     }
 #if LIGHTS
-    float stretch = column_stretch(u.volume, uv);
     sum += local_scattering(froxel, RaySegment(position, to_eye, (depth_m - near_m) * stretch,
                                                (far_m - depth_m) * stretch));
 #endif

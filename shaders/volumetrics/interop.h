@@ -10,6 +10,14 @@ TYNDALL_INTEROP_BEGIN
 
 struct VolumetricParameters {
     ScatteringVolume volume; // first, so that those who only look up bind the same buffer
+    // The column of uv is the set of render-space points  z (ray_u u + ray_v v + ray_0) + (eye_u u + eye_v v + eye_0),
+    // z the view depth, m; the second part is 0 for a perspective view.
+    vec4 ray_u;
+    vec4 ray_v;
+    vec4 ray_0;
+    vec4 eye_u;
+    vec4 eye_v;
+    vec4 eye_0;
     mat4 render_from_view;
     mat4 previous_view_from_view; // where a point of this frame's view space was in the frame before's
     vec4 homogeneous;     // rgb albedo; w: extinction, 1/m, times density_scale
@@ -20,7 +28,7 @@ struct VolumetricParameters {
     vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0
     vec4 phase;           // x: Henyey-Greenstein g; yzw 0
     vec4 temporal;        // x: steady weight of a new frame; y: oldest age, frames; z: history's radiance times z is in
-                          // this frame's scale; w: 1 where the camera has not moved since
+                          // this frame's scale; w 0
     vec4 jitter;          // xyz: this frame's offset in [0, 1); w: 0 samples the centre of each froxel
     vec4 ambient;         // rgb radiance from every direction
     vec4 sun_direction;   // xyz: unit direction in which it travels, render space

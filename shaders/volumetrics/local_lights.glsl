@@ -12,9 +12,22 @@ struct RaySegment {
     float ahead_m;  // and away from it
 };
 
-// Mean of 1 / d^2 over the segment, exact (the integral is a difference of arc tangents): sampled at a point it would be
-// several times too bright beside the light and flicker as either moves. `d` leads from the sample to the light.
-float mean_inverse_square(RaySegment segment, vec3 d, float radius_m) {
+// atan(y, x) for y > 0, to 8e-7: Chebyshev fit of atan(r) / r on [0, 1] in r^2.
+float positive_atan(float y, float x) {
+    float ax = abs(x);
+    float r = min(ax, y) / max(ax, y);
+    float s = r * r;
+    float p = r * (0.99999923 + s * (-0.33325678 + s * (0.19872040 + s * (-0.13447864 +
+                                          s * (0.08312645 + s * (-0.03636043 + s * 0.00764835))))));
+    p = y > ax ? 1.57079633 - p : p;
+    return x < 0.0 ? 3.14159265 - p : p;
+}
+
+// Phase function times the mean of 1 / d^2 over the segment. The mean is exact (the integral is a difference of arc
+// tangents): sampled at a point, 1 / d^2 would be several times too bright beside the light and flicker as either moves.
+// `d` leads from the sample to the light, `to_light` is of unit length. The phase function as in henyey_greenstein; one
+// division serves all.
+float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float radius_m, float g) {
     float along = -dot(d, segment.to_eye); // of the light's foot on the ray, from the sample
     vec3 offset = d + along * segment.to_eye;
     float h_squared = max(dot(offset, offset), radius_m * radius_m);
@@ -22,12 +35,15 @@ float mean_inverse_square(RaySegment segment, vec3 d, float radius_m) {
     float a = -segment.behind_m - along;
     float b = segment.ahead_m - along;
     float length_m = max(b - a, 1e-6);
-    return atan(h * length_m, h_squared + a * b) / (h * length_m);
+    float angle = positive_atan(h * length_m, h_squared + a * b);
+    float peak = abs(g);
+    vec3 chord = g >= 0.0 ? to_light + segment.to_eye : to_light - segment.to_eye;
+    float spread = (1.0 - peak) * (1.0 - peak) + peak * dot(chord, chord);
+    return angle * (1.0 - peak) * (1.0 + peak) / (12.566370614 * spread * sqrt(spread) * h * length_m);
 }
 
-// In-scattered radiance per scattering coefficient from light `index`. Window, cone and phase are taken at the sample.
-// Exactly 0 beyond the light's range. A macro, since a buffer cannot be passed to a function: members are fetched when
-// they are needed, and most lights end at their range, most others are no spots.
+// Adds the in-scattered radiance per scattering coefficient from light `index`. Window, cone and phase are taken at the
+// sample. Exactly 0 beyond the light's range. A macro, since a buffer cannot be passed to a function.
 #define ADD_SCATTERED_FROM_LIGHT(lights, index, segment, g, sum)                                                       \
     {                                                                                                                  \
         vec4 position_range = lights[index].position_range;                                                            \
@@ -36,13 +52,12 @@ float mean_inverse_square(RaySegment segment, vec3 d, float radius_m) {
         float fade = light_window(position_range.w, distance_squared);                                                 \
         if (fade > 0.0) {                                                                                              \
             vec4 intensity_type = lights[index].intensity_type;                                                        \
+            vec4 direction_radius = lights[index].direction_radius;                                                    \
             vec3 to_light = d * inversesqrt(max(distance_squared, 1e-20));                                             \
-            if (intensity_type.w > 0.5) {                                                                              \
-                fade *= spot_cone(lights[index].direction_radius.xyz, lights[index].cone.xy, to_light);                \
-            }                                                                                                          \
-            float radius_m = max(lights[index].direction_radius.w, smallest_light_radius_m);                           \
-            float phase = henyey_greenstein(g, -to_light, segment.to_eye);                                             \
-            sum += intensity_type.rgb * (fade * phase * mean_inverse_square(segment, d, radius_m));                    \
+            float cone = spot_cone(direction_radius.xyz, lights[index].cone.xy, to_light);                             \
+            fade *= intensity_type.w > 0.5 ? cone : 1.0;                                                               \
+            float radius_m = max(direction_radius.w, smallest_light_radius_m);                                         \
+            sum += intensity_type.rgb * (fade * scattered_inverse_square(segment, d, to_light, radius_m, g));          \
         }                                                                                                              \
     }
 

@@ -173,6 +173,14 @@ TEST_F(Queues, HostSemaphoresAreWaitedForAndSignalledWithTheFinalLayoutBefore) {
                                        "frame; add it to the import bindings");
 }
 
+/// Graphics, compute, transfer: what a barrier there may name, of the stages that the random frames use.
+VkPipelineStageFlags2 stages_of(std::uint32_t family) {
+    const VkPipelineStageFlags2 transfer = everything | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    return family == 0   ? ~VkPipelineStageFlags2{0}
+           : family == 1 ? transfer | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
+                         : transfer;
+}
+
 // One transfer of one range, as both halves name it.
 using Transfer = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t, std::uint64_t, std::uint64_t, std::uint32_t,
                             std::uint32_t, std::uint32_t, std::uint32_t>;
@@ -215,6 +223,14 @@ TEST_F(Queues, RandomFramesPairEveryTransferAndNeverWaitForTheFuture) {
             const auto family = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(recorded.queue) - 0x1000);
             for (const VkSemaphoreSubmitInfo& wait : recorded.waits) {
                 ASSERT_LE(wait.value, reached[wait.semaphore]) << "signalled only by a later submission";
+            }
+            for (const VkImageMemoryBarrier2& barrier : recorded.commands.all_image_barriers()) {
+                ASSERT_EQ((barrier.srcStageMask | barrier.dstStageMask) & ~stages_of(family), 0U)
+                    << "a stage that family " << family << " does not have";
+            }
+            for (const VkBufferMemoryBarrier2& barrier : recorded.commands.all_buffer_barriers()) {
+                ASSERT_EQ((barrier.srcStageMask | barrier.dstStageMask) & ~stages_of(family), 0U)
+                    << "a stage that family " << family << " does not have";
             }
             for (const Transfer& acquired : transfers(recorded, family, false)) {
                 ASSERT_EQ(released.count(acquired), 1U) << "acquired, but never released so";

@@ -27,7 +27,7 @@ void redirect(int descriptor, const std::filesystem::path& path) {
 
 } // namespace
 
-ToolRun run_tool(const std::vector<std::string>& arguments) {
+ToolRun run_tool(const std::vector<std::string>& arguments, const std::string& driver) {
     const std::filesystem::path folder = fresh_folder();
     const std::filesystem::path out = folder / "stdout";
     const std::filesystem::path err = folder / "stderr";
@@ -40,6 +40,9 @@ ToolRun run_tool(const std::vector<std::string>& arguments) {
     argv.push_back(nullptr);
     const pid_t child = fork();
     if (child == 0) {
+        if (!driver.empty()) {
+            setenv("VK_DRIVER_FILES", driver.c_str(), 1);
+        }
         redirect(STDOUT_FILENO, out);
         redirect(STDERR_FILENO, err);
         execv(TYNDALL_TOOL, argv.data());
@@ -60,6 +63,8 @@ std::filesystem::path fresh_folder() {
     return mkdtemp(pattern.data());
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream(path) << text;
+}
 
 } // namespace tyndall::test

@@ -13,8 +13,9 @@ struct ToolRun {
     std::string errors;
 };
 
-/// Runs the tool with these arguments, no shell between.
-[[nodiscard]] ToolRun run_tool(const std::vector<std::string>& arguments);
+/// Runs the tool with these arguments, no shell between, on the driver whose manifest `driver` names (empty: as the
+/// test itself).
+[[nodiscard]] ToolRun run_tool(const std::vector<std::string>& arguments, const std::string& driver = {});
 
 /// An empty folder of the running test's own.
 [[nodiscard]] std::filesystem::path fresh_folder();

@@ -38,10 +38,18 @@ protected:
     std::filesystem::path folder_;
 };
 
-TEST_F(BadInput, NoSubcommand) { expect_refused({}, {"subcommand"}); }
-TEST_F(BadInput, UnknownOption) { expect_refused(render({"--sise", "1x1"}), {"--sise"}); }
-TEST_F(BadInput, MissingScene) { expect_refused({"render", "no/such/scene.gltf"}, {"no/such/scene.gltf"}); }
-TEST_F(BadInput, SceneIsAFolder) { expect_refused({"render", folder_.string()}, {folder_.string()}); }
+TEST_F(BadInput, NoSubcommand) {
+    expect_refused({}, {"subcommand"});
+}
+TEST_F(BadInput, UnknownOption) {
+    expect_refused(render({"--sise", "1x1"}), {"--sise"});
+}
+TEST_F(BadInput, MissingScene) {
+    expect_refused({"render", "no/such/scene.gltf"}, {"no/such/scene.gltf"});
+}
+TEST_F(BadInput, SceneIsAFolder) {
+    expect_refused({"render", folder_.string()}, {folder_.string()});
+}
 TEST_F(BadInput, BrokenScene) {
     write_text(folder_ / "broken.gltf", "{\"asset\":");
     expect_refused({"render", (folder_ / "broken.gltf").string()}, {"broken.gltf"});
@@ -51,25 +59,46 @@ TEST_F(BadInput, SceneIsNoScene) {
     expect_refused({"render", (folder_ / "picture.png").string()}, {"picture.png"});
 }
 TEST_F(BadInput, RequiredExtensionUnknown) {
-    write_text(folder_ / "draco.gltf",
-               R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],)"
-               R"("extensionsRequired":["KHR_draco_mesh_compression"]})");
+    write_text(folder_ / "draco.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],)"
+                                       R"("extensionsRequired":["KHR_draco_mesh_compression"]})");
     expect_refused({"render", (folder_ / "draco.gltf").string()}, {"KHR_draco_mesh_compression"});
 }
-TEST_F(BadInput, SizeZero) { expect_refused({"render", TYNDALL_HALL, "--size", "0x720"}, {"--size", "0x720"}); }
-TEST_F(BadInput, SizeNotASize) { expect_refused({"render", TYNDALL_HALL, "--size", "big"}, {"--size", "big"}); }
-TEST_F(BadInput, SizeTooLarge) { expect_refused({"render", TYNDALL_HALL, "--size", "100000x1"}, {"--size", "16384"}); }
-TEST_F(BadInput, FramesZero) { expect_refused({"render", TYNDALL_HALL, "--frames", "0"}, {"--frames"}); }
-TEST_F(BadInput, NoSuchCamera) { expect_refused(render({"--camera", "99"}), {"camera 99"}); }
-TEST_F(BadInput, NoSuchDevice) { expect_refused(render({"--device", "imaginary"}), {"imaginary"}); }
-TEST_F(BadInput, UnknownImageFormat) { expect_refused(render({"--out", "picture.bmp"}), {"picture.bmp", ".png", ".exr"}); }
+TEST_F(BadInput, SizeZero) {
+    expect_refused({"render", TYNDALL_HALL, "--size", "0x720"}, {"--size", "0x720"});
+}
+TEST_F(BadInput, SizeNotASize) {
+    expect_refused({"render", TYNDALL_HALL, "--size", "big"}, {"--size", "big"});
+}
+TEST_F(BadInput, SizeTooLarge) {
+    expect_refused({"render", TYNDALL_HALL, "--size", "100000x1"}, {"--size", "16384"});
+}
+TEST_F(BadInput, FramesZero) {
+    expect_refused({"render", TYNDALL_HALL, "--frames", "0"}, {"--frames"});
+}
+TEST_F(BadInput, NoSuchCamera) {
+    expect_refused(render({"--camera", "99"}), {"camera 99"});
+}
+TEST_F(BadInput, NoSuchDevice) {
+    expect_refused(render({"--device", "imaginary"}), {"imaginary"});
+}
+TEST_F(BadInput, UnknownImageFormat) {
+    expect_refused(render({"--out", "picture.bmp"}), {"picture.bmp", ".png", ".exr"});
+}
 TEST_F(BadInput, UnwritableImage) {
     expect_refused(render({"--out", (folder_ / "no" / "such" / "picture.png").string()}), {"picture.png"});
 }
-TEST_F(BadInput, TimeNotFinite) { expect_refused(render({"--time", "nan"}), {"--time"}); }
-TEST_F(BadInput, ExposureNotFinite) { expect_refused(render({"--exposure", "inf"}), {"--exposure"}); }
-TEST_F(BadInput, MissingFog) { expect_refused(render({"--fog", "no/such/fog.json"}), {"no/such/fog.json"}); }
-TEST_F(BadInput, FogIsNoJson) { expect_refused(render({"--fog", fog("{")}), {"fog.json"}); }
+TEST_F(BadInput, TimeNotFinite) {
+    expect_refused(render({"--time", "nan"}), {"--time"});
+}
+TEST_F(BadInput, ExposureNotFinite) {
+    expect_refused(render({"--exposure", "inf"}), {"--exposure"});
+}
+TEST_F(BadInput, MissingFog) {
+    expect_refused(render({"--fog", "no/such/fog.json"}), {"no/such/fog.json"});
+}
+TEST_F(BadInput, FogIsNoJson) {
+    expect_refused(render({"--fog", fog("{")}), {"fog.json"});
+}
 TEST_F(BadInput, FogWithUnknownKey) {
     expect_refused(render({"--fog", fog(R"({"medium":{"homogenous":{}}})")}), {"fog.json", "medium.homogenous"});
 }

@@ -79,7 +79,7 @@ TEST_F(Temporal, StaticSceneConvergesAsARunningMean) {
 TEST_F(Temporal, ConstantInputDoesNotStallInHalfPrecision) {
     Scene scene = temporal_scene();
     scene.inputs.settings.storage = StorageFormat::fp16;
-    scene.inputs.settings.grid = {.width = 16, .height = 8, .slices = 4, .range_m = 64.0F, .shape_m = 16.0F};
+    scene.inputs.settings.grid = {.width = 16, .height = 8, .slices = 8, .range_m = 64.0F, .shape_m = 16.0F};
     scene.inputs.medium.ambient_radiance = glm::vec3(1.0F);
     for (int i = 0; i < 30; ++i) {
         (void)render(scene);
@@ -177,7 +177,7 @@ TEST_F(Temporal, ReprojectionFollowsTheWorldWhenTheCameraMovesAndTurns) {
 TEST_F(Temporal, RadianceScaleChangesDoNotFlash) {
     Scene scene = temporal_scene();
     scene.inputs.settings.storage = StorageFormat::fp16;
-    scene.inputs.settings.grid = {.width = 16, .height = 8, .slices = 4, .range_m = 64.0F, .shape_m = 16.0F};
+    scene.inputs.settings.grid = {.width = 16, .height = 8, .slices = 8, .range_m = 64.0F, .shape_m = 16.0F};
     scene.inputs.medium.ambient_radiance = glm::vec3(30000.0F);
     (void)render(scene);
     scene.inputs.medium.ambient_radiance = glm::vec3(40000.0F); // stored at half scale from here
