@@ -14,9 +14,9 @@ struct PassDuration {
     double milliseconds = 0.0;
 };
 
-/// One row a pass, kept ones in submission order and then those left out: name, injection point at which it was declared,
-/// queue and slot where it runs, milliseconds (blank without a measurement), why it is there or not, why that queue; under
-/// each row the barriers before it. Then waits between queues and memory.
+/// One row a pass, kept ones in submission order and then those left out: name, injection point at which it was
+/// declared, queue and slot where it runs, milliseconds (blank without a measurement), why it is there or not, why that
+/// queue; under each row the barriers before it. Then waits between queues and memory.
 [[nodiscard]] std::string explain_table(const GraphDesc& graph, const Plan& plan,
                                         std::span<const PassDuration> durations = {});
 

@@ -7,51 +7,10 @@
 // queue, before the first use there, with the masks of all the group's uses on that queue: reads are merged.
 #include <algorithm>
 
-#include "rendergraph/stages.hpp"
+#include "rendergraph/synchronise_types.hpp"
 
 namespace tyndall::rg::stages {
 namespace {
-
-constexpr VkAccessFlags2 any_write = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
-                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
-                                     VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR |
-                                     VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
-
-struct Group {
-    std::vector<const Use*> uses;
-    bool writes = false;
-    bool discards = false; ///< a write that does not read
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-};
-
-/// What came before a group: other uses, or the state on the way in.
-struct Before {
-    std::vector<const Use*> uses;
-    VkPipelineStageFlags2 host_stages = 0; ///< imports: the host's last use
-    VkAccessFlags2 host_access = 0;
-    std::uint32_t host_family = VK_QUEUE_FAMILY_IGNORED;
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    Hazard entry = Hazard::frame_entry;
-    bool in_frame = false; ///< `uses` are of this very resource
-    bool content = true;   ///< there is content that a transition must keep
-    std::uint32_t alias_of = none;
-};
-
-struct CellDependency {
-    Dependency dependency;
-    std::uint32_t slot; ///< of the consumer, the number of slots for exits
-    std::uint32_t release_batch = none;
-    bool only_at_release = false; ///< recorded at the end of release_batch and nowhere else
-    std::vector<std::uint32_t> cells;
-};
-
-bool same_but_range(const Dependency& a, const Dependency& b) {
-    return a.producer == b.producer && a.consumer == b.consumer && a.hazard == b.hazard &&
-           a.transfers_ownership == b.transfers_ownership && a.discards == b.discards && a.src_stages == b.src_stages &&
-           a.src_access == b.src_access && a.local_stages == b.local_stages && a.local_access == b.local_access &&
-           a.dst_stages == b.dst_stages && a.dst_access == b.dst_access && a.old_layout == b.old_layout &&
-           a.new_layout == b.new_layout && a.src_queue == b.src_queue && a.dst_queue == b.dst_queue;
-}
 
 class Synchroniser {
 public:

@@ -1,108 +1,22 @@
-#include "rendergraph/verify.hpp"
+#include "rendergraph/verify_types.hpp"
 
 #include <algorithm>
 
 namespace tyndall::rg {
 namespace {
 
-constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-constexpr VkAccessFlags2 writing = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
-                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
-                                   VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
-                                   VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
-
-constexpr VkPipelineStageFlags2 only_graphics_stages =
-    VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
-    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT |
-    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
-    VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT;
-
-/// `mask` names every stage of `stages`; ALL_COMMANDS names all but the host.
-bool covers_stages(VkPipelineStageFlags2 mask, VkPipelineStageFlags2 stages) {
-    if ((mask & all_commands) != 0) {
-        stages &= VK_PIPELINE_STAGE_2_HOST_BIT;
-    }
-    return (stages & ~mask) == 0;
-}
-bool meets_stages(VkPipelineStageFlags2 a, VkPipelineStageFlags2 b) {
-    const VkPipelineStageFlags2 device = ~VK_PIPELINE_STAGE_2_HOST_BIT;
-    return (a & b) != 0 || ((a & all_commands) != 0 && (b & device) != 0) ||
-           ((b & all_commands) != 0 && (a & device) != 0);
-}
-bool covers_access(VkAccessFlags2 mask, VkAccessFlags2 access) {
-    const bool all_reads = (mask & VK_ACCESS_2_MEMORY_READ_BIT) != 0;
-    const bool all_writes = (mask & VK_ACCESS_2_MEMORY_WRITE_BIT) != 0;
-    access &= ~mask;
-    access &= all_reads ? writing : ~VkAccessFlags2{0};
-    access &= all_writes ? ~writing : ~VkAccessFlags2{0};
-    return access == 0;
-}
-
-/// A part of a resource: mips x layers of an image, or bytes of a buffer.
-struct Region {
-    std::uint64_t first_a = 0, end_a = 1; ///< mips, or bytes
-    std::uint64_t first_b = 0, end_b = 1; ///< layers
-    [[nodiscard]] bool meets(const Region& o) const {
-        return first_a < o.end_a && o.first_a < end_a && first_b < o.end_b && o.first_b < end_b;
-    }
-    [[nodiscard]] bool contains(const Region& o) const {
-        return first_a <= o.first_a && o.end_a <= end_a && first_b <= o.first_b && o.end_b <= end_b;
-    }
-};
-
-Region region_of(const ResourceDesc& resource, const ImageRange& image, const BufferRange& buffer) {
-    if (resource.kind == ResourceKind::buffer) {
-        const std::uint64_t end =
-            buffer.size == whole_buffer ? resource.buffer.size_bytes : buffer.offset + buffer.size;
-        return {buffer.offset, end, 0, 1};
-    }
-    const std::uint32_t mips =
-        image.mip_count == all_remaining ? resource.image.mips - image.base_mip : image.mip_count;
-    const std::uint32_t layers =
-        image.layer_count == all_remaining ? resource.image.layers - image.base_layer : image.layer_count;
-    return {image.base_mip, image.base_mip + mips, image.base_layer, image.base_layer + layers};
-}
-
-/// Where on one queue an event is known to have happened, and where its memory is visible.
-struct Reach {
-    VkPipelineStageFlags2 ordered = 0; ///< later commands in these stages come after it
-    VkPipelineStageFlags2 visible_stages = 0;
-    VkAccessFlags2 visible_access = 0;
-};
-
-/// An access, or a layout transition, that later ones may conflict with.
-struct Event {
-    std::uint32_t pass = none; ///< none: the host
-    std::uint32_t resource = none;
-    Region region;
-    std::uint32_t queue = 0;
-    VkPipelineStageFlags2 stages = 0; ///< 0 for transitions: reached only through `reach`
-    VkAccessFlags2 access = 0;
-    bool writes = false;
-    bool available = false;
-    std::vector<Reach> reach; ///< by queue
-};
-
-/// Layout, definedness and owner of one atom of a resource.
-struct Atom {
-    Region region;
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    bool defined = false;
-    std::uint32_t owner = VK_QUEUE_FAMILY_IGNORED; ///< IGNORED: nobody yet
-    bool released = false;                         ///< to `released_to`, not yet acquired
-    std::uint32_t released_to = VK_QUEUE_FAMILY_IGNORED;
-};
+using namespace checker;
 
 class Verifier {
 public:
     Verifier(const GraphDesc& graph, const Plan& plan) : graph_(graph), plan_(plan) {}
 
     std::vector<Violation> run() {
-        if (!well_formed()) {
-            return std::move(found_);
+        found_ = check_form(graph_, plan_);
+        if (!found_.empty()) {
+            return std::move(found_); // indices cannot be trusted
         }
-        placements();
-        make_atoms();
+        begin();
         for (std::uint32_t b = 0; b < plan_.batches.size(); ++b) {
             batch(b);
         }
@@ -120,118 +34,20 @@ private:
     }
     [[nodiscard]] std::string resource_name(std::uint32_t r) const { return "'" + graph_.resources[r].name + "'"; }
 
-    bool well_formed() {
-        const auto broken = [&](const char* what) {
-            report(ViolationCode::malformed, none, none, none, what);
-            return false;
-        };
-        std::vector<std::uint32_t> seen(graph_.passes.size(), 0);
-        for (const PlannedPass& planned : plan_.passes) {
-            if (planned.pass >= graph_.passes.size() || planned.queue >= plan_.topology.queues.size() ||
-                planned.first_barrier + planned.barrier_count > plan_.dependencies.size()) {
-                return broken("a planned pass points outside the graph, the queues or the dependencies");
-            }
-            ++seen[planned.pass];
-        }
-        for (const CulledPass& culled : plan_.culled_passes) {
-            if (culled.pass >= graph_.passes.size()) {
-                return broken("a pass that is left out is not in the graph");
-            }
-            ++seen[culled.pass];
-        }
-        if (std::any_of(seen.begin(), seen.end(), [](std::uint32_t n) { return n != 1; })) {
-            return broken("some pass is neither planned nor left out, or both, or twice");
-        }
-        std::uint32_t next = 0;
-        for (const Batch& b : plan_.batches) {
-            if (b.first_pass != next || b.first_pass + b.pass_count > plan_.passes.size() ||
-                b.queue >= plan_.topology.queues.size()) {
-                return broken("the batches do not follow the passes");
-            }
-            next += b.pass_count;
-            for (const std::uint32_t d : b.releases) {
-                if (d >= plan_.dependencies.size()) {
-                    return broken("a batch releases a dependency that does not exist");
-                }
-            }
-        }
-        for (const Dependency& d : plan_.dependencies) {
-            if (d.resource >= graph_.resources.size() || d.src_queue >= plan_.topology.queues.size() ||
-                d.dst_queue >= plan_.topology.queues.size()) {
-                return broken("a dependency points outside the resources or queues");
-            }
-        }
-        if (next != plan_.passes.size() || plan_.placements.size() != graph_.resources.size() ||
-            plan_.first_exit_barrier + plan_.exit_barrier_count > plan_.dependencies.size()) {
-            return broken("the batches do not hold all passes, or the placements not all resources");
-        }
-        return true;
-    }
-
-    void placements() {
-        for (std::uint32_t r = 0; r < plan_.placements.size(); ++r) {
-            const Placement& p = plan_.placements[r];
-            if (p.kind == PlacementKind::heap &&
-                (p.heap >= plan_.heaps.size() || p.offset_bytes + p.size_bytes > plan_.heaps[p.heap].size_bytes)) {
-                report(ViolationCode::memory_overlap, none, none, r, resource_name(r) + " lies outside its heap");
-            }
-        }
-    }
-
     [[nodiscard]] bool share_bytes(std::uint32_t a, std::uint32_t b) const {
-        const Placement& pa = plan_.placements[a];
-        const Placement& pb = plan_.placements[b];
-        return pa.kind == PlacementKind::heap && pb.kind == PlacementKind::heap && pa.heap == pb.heap &&
-               pa.offset_bytes < pb.offset_bytes + pb.size_bytes && pb.offset_bytes < pa.offset_bytes + pa.size_bytes;
+        return a != b && checker::share_bytes(plan_, a, b);
     }
 
-    void make_atoms() {
-        atoms_.resize(graph_.resources.size());
+    void begin() {
         aliases_.resize(graph_.resources.size());
         events_of_.resize(graph_.resources.size());
         for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
-            const ResourceDesc& resource = graph_.resources[r];
-            std::vector<std::uint64_t> cuts_a;
-            std::vector<std::uint64_t> cuts_b;
-            const auto cut = [&](const Region& region) {
-                cuts_a.insert(cuts_a.end(), {region.first_a, region.end_a});
-                cuts_b.insert(cuts_b.end(), {region.first_b, region.end_b});
-            };
-            cut(region_of(resource, {}, {}));
-            for (const AccessDesc& access : graph_.accesses) {
-                if (access.resource == r) {
-                    cut(region_of(resource, access.image_range, access.buffer_range));
-                }
-            }
-            for (std::vector<std::uint64_t>* cuts : {&cuts_a, &cuts_b}) {
-                std::sort(cuts->begin(), cuts->end());
-                cuts->erase(std::unique(cuts->begin(), cuts->end()), cuts->end());
-            }
-            Atom atom;
-            if (resource.import != none) {
-                const ImportDesc& import = graph_.imports[resource.import];
-                atom.layout = import.initial_layout;
-                atom.defined =
-                    resource.kind == ResourceKind::buffer || import.initial_layout != VK_IMAGE_LAYOUT_UNDEFINED;
-                atom.owner = import.initial_family;
-                if (import.initial_family != VK_QUEUE_FAMILY_IGNORED) {
-                    atom.released = true; // to whichever family the host released it; its half is the host's
-                }
-            } else if (resource.lifetime == ResourceLifetime::history) {
-                atom.layout = plan_.placements[r].resting_layout;
-                atom.defined = true;
-            }
-            for (std::size_t a = 0; a + 1 < cuts_a.size(); ++a) {
-                for (std::size_t b = 0; b + 1 < cuts_b.size(); ++b) {
-                    atom.region = {cuts_a[a], cuts_a[a + 1], cuts_b[b], cuts_b[b + 1]};
-                    atoms_[r].push_back(atom);
-                }
-            }
-            if (resource.import != none) {
-                add_host_event(r, graph_.imports[resource.import]);
+            atoms_.push_back(make_atoms(graph_, plan_, r));
+            if (graph_.resources[r].import != none) {
+                add_host_event(r, graph_.imports[graph_.resources[r].import]);
             }
             for (std::uint32_t other = 0; other < graph_.resources.size(); ++other) {
-                if (other != r && share_bytes(r, other)) {
+                if (share_bytes(r, other)) {
                     aliases_[r].push_back(other);
                 }
             }
@@ -656,22 +472,6 @@ private:
 };
 
 } // namespace
-
-std::string_view name_of(ViolationCode code) {
-    switch (code) {
-    case ViolationCode::malformed: return "malformed";
-    case ViolationCode::race: return "race";
-    case ViolationCode::not_visible: return "not visible";
-    case ViolationCode::wrong_layout: return "wrong layout";
-    case ViolationCode::undefined_content: return "undefined content";
-    case ViolationCode::ownership: return "ownership";
-    case ViolationCode::queue_cannot: return "queue cannot";
-    case ViolationCode::never_signalled: return "never signalled";
-    case ViolationCode::memory_overlap: return "memory overlap";
-    case ViolationCode::exit_state: return "exit state";
-    }
-    return "";
-}
 
 std::vector<Violation> verify(const GraphDesc& graph, const Plan& plan) {
     return Verifier(graph, plan).run();

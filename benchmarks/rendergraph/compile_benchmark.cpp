@@ -1,5 +1,5 @@
-// Cost of declaring and compiling a generic frame: each pass reads 2 of the last 16 outputs and writes one, a quarter may
-// run on async compute, a tenth has no consumer. One thread, two queues, all stages on. Time a pass is `per_pass`.
+// Cost of declaring and compiling a generic frame: each pass reads 2 of the last 16 outputs and writes one, a quarter
+// may run on async compute, a tenth has no consumer. One thread, two queues, all stages on. Time a pass is `per_pass`.
 #include <random>
 #include <string>
 #include <vector>
@@ -27,7 +27,8 @@ DeclaredGraph generic_frame(const std::vector<std::string>& pass_names, const st
     const auto count = static_cast<std::uint32_t>(pass_names.size());
     std::vector<Image> recent;
     for (std::uint32_t i = 0; i < count; ++i) {
-        Image out = graph.create_image(image_names[i], {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .extent = {256, 256, 1}});
+        Image out =
+            graph.create_image(image_names[i], {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .extent = {256, 256, 1}});
         PassBuilder pass = graph.add_pass(pass_names[i], PassKind::compute);
         for (std::uint32_t k = 0; k < 2 && recent.size() > k; ++k) {
             const std::size_t back = (random() % (std::min<std::size_t>(recent.size(), 16) / 2 + 1)) * 2 + k;
@@ -54,9 +55,9 @@ const QueueTopology two_queues = {{{QueueKind::graphics, 0, can_graphics | can_c
                                    {QueueKind::compute, 1, can_compute | can_transfer}}};
 
 void report_per_pass(benchmark::State& state) {
-    state.counters["per_pass"] = benchmark::Counter(static_cast<double>(state.range(0)),
-                                                    benchmark::Counter::kIsIterationInvariantRate |
-                                                        benchmark::Counter::kInvert);
+    state.counters["per_pass"] =
+        benchmark::Counter(static_cast<double>(state.range(0)),
+                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void declare_and_compile(benchmark::State& state) {

@@ -141,8 +141,9 @@ void main() {
         result.rgb = mix(old.rgb, result.rgb, max(1.0 / age, u.temporal.x));
         result.a = age;
     }
-    uint dice = bits.x * (2u * u.frame.x + 1u);
-    imageStore(in_scattered, ivec3(froxel), storable_unbiased(result, dice ^ dice >> 16u));
+    uint dice = (bits.x ^ u.frame.x * 0x9e3779b9u) * 0x2c1b3c6du;
+    dice = (dice ^ dice >> 15u) * 0x297a2d39u;
+    imageStore(in_scattered, ivec3(froxel), storable_unbiased(result, dice ^ dice >> 15u));
 #else
     imageStore(in_scattered, ivec3(froxel), storable(result));
 #endif

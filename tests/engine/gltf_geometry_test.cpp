@@ -129,7 +129,6 @@ TEST(GltfGeometry, NormalisedIntegersMapToTheirRange) {
         file.add_accessor(std::vector<std::uint8_t>{0, 255, 51, 102, 0, 0, 0, 0}, "VEC2", type_unsigned_byte, true);
     const int uv1 = file.add_accessor(std::vector<std::uint16_t>{65535, 0, 13107, 26214, 0, 0, 0, 0}, "VEC2",
                                       type_unsigned_short, true);
-    // -128 and -32768 map to -1 like -127 and -32767 (section 3.6.2.2).
     const int normals = file.add_accessor(std::vector<std::int8_t>{0, 0, 127, 0, -128, 0, -127, 0, 0, 0, 0, 127},
                                           "VEC3", type_byte, true);
     const int colors = file.add_accessor(std::vector<std::uint16_t>{65535, 0, 13107, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3",
@@ -162,6 +161,19 @@ TEST(GltfGeometry, QuantisedPositionsKeepTheirValue) {
     const Primitive primitive = only_primitive(file);
     EXPECT_EQ(primitive.positions[1], glm::vec3(-300, 0, 0));
     EXPECT_EQ(primitive.positions[2], glm::vec3(0, 200, 0));
+}
+
+TEST(GltfGeometry, LeastNormalisedIntegerIsMinusOneToo) {
+    // Section 3.6.2.2: -128 and -127 both map to -1.
+    GltfFile file;
+    const int view = file.add_view(std::vector<std::int8_t>{-128, 0, 0, 0, -127, 127, 0, 0, 0, 127, 0, 0}, 4);
+    const int accessor = file.add(
+        "accessors",
+        {{"bufferView", view}, {"componentType", type_byte}, {"normalized", true}, {"count", 3}, {"type", "VEC3"}});
+    file.add_shown_mesh({{"attributes", {{"POSITION", accessor}}}});
+    const Primitive primitive = only_primitive(file);
+    EXPECT_EQ(primitive.positions[0], glm::vec3(-1, 0, 0));
+    EXPECT_EQ(primitive.positions[1], glm::vec3(-1, 1, 0));
 }
 
 TEST(GltfGeometry, InterleavedVerticesAreTakenApart) {

@@ -51,7 +51,7 @@ struct Picture {
 
 constexpr glm::dvec4 background{10.0, 20.0, 30.0, 1.0};
 
-class particles_draw : public ParticleTest {
+class ParticlesDrawTest : public ParticleFrameTest {
 protected:
     [[nodiscard]] std::vector<glm::vec4> draw(const std::vector<ParticleEmitter>& emitters, const Picture& picture);
     [[nodiscard]] glm::dvec4 center(const std::vector<ParticleEmitter>& emitters, const Picture& picture) {
@@ -73,7 +73,7 @@ private:
     std::vector<rg::ImportBinding> imports_;
 };
 
-void particles_draw::add_fog(rg::GraphBuilder& graph, const Fog& fog, engine::ParticleSurroundings& surroundings) {
+void ParticlesDrawTest::add_fog(rg::GraphBuilder& graph, const Fog& fog, engine::ParticleSurroundings& surroundings) {
     const double range_m = 40.0;
     const double shape_m = 10.0;
     const double log_term = std::log1p(range_m / shape_m);
@@ -115,7 +115,7 @@ void particles_draw::add_fog(rg::GraphBuilder& graph, const Fog& fog, engine::Pa
     surroundings.scattering = images;
 }
 
-void particles_draw::add_shadow(rg::GraphBuilder& graph, float depth, engine::ParticleSurroundings& surroundings) {
+void ParticlesDrawTest::add_shadow(rg::GraphBuilder& graph, float depth, engine::ParticleSurroundings& surroundings) {
     engine::SunShadow shadow{};
     shadow.cascades =
         graph.create_image("cascades", {.format = VK_FORMAT_D32_SFLOAT, .extent = {4, 4, 1}, .layers = 4});
@@ -137,7 +137,7 @@ void particles_draw::add_shadow(rg::GraphBuilder& graph, float depth, engine::Pa
     surroundings.sun_shadow = shadow;
 }
 
-std::vector<glm::vec4> particles_draw::draw(const std::vector<ParticleEmitter>& emitters, const Picture& picture) {
+std::vector<glm::vec4> ParticlesDrawTest::draw(const std::vector<ParticleEmitter>& emitters, const Picture& picture) {
     constexpr VkFormat color_format = VK_FORMAT_R32G32B32A32_SFLOAT;
     constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
     imports_.clear();
@@ -213,11 +213,11 @@ void expect_near(const glm::dvec4& actual, const glm::dvec4& expected, double re
 
 const glm::dvec3 albedo{0.5, 0.75, 1.0};
 
-TEST_F(particles_draw, the_middle_has_the_particles_alpha_and_ambient_light) {
+TEST_F(ParticlesDrawTest, TheMiddleHasTheParticlesAlphaAndAmbientLight) {
     expect_near(center({resting({0, 0, -10}, 1.0F, 0.4F)}, {}), over(background, 4.0 * albedo, 0.4), 1e-5);
 }
 
-TEST_F(particles_draw, coverage_falls_to_the_rim_and_is_round) {
+TEST_F(ParticlesDrawTest, CoverageFallsToTheRimAndIsRound) {
     const float radius_m = 2.0F;
     const std::vector<glm::vec4> pixels = draw({resting({0, 0, -10}, radius_m, 1.0F)}, {});
     // The view is 10 m wide at the particle.
@@ -232,7 +232,7 @@ TEST_F(particles_draw, coverage_falls_to_the_rim_and_is_round) {
     }
 }
 
-TEST_F(particles_draw, surfaces_fade_and_hide) {
+TEST_F(ParticlesDrawTest, SurfacesFadeAndHide) {
     const auto coverage = [&](double surface_m) {
         const glm::dvec4 pixel = center({resting({0, 0, -10}, 2.0F, 1.0F)}, {.surface_m = surface_m});
         return (background.r - pixel.r) / (background.r - 2.0);
@@ -244,7 +244,7 @@ TEST_F(particles_draw, surfaces_fade_and_hide) {
     EXPECT_NEAR(coverage(5.0), 0.0, 1e-9);
 }
 
-TEST_F(particles_draw, nearer_particles_cover_farther_ones_in_any_order_of_emitters) {
+TEST_F(ParticlesDrawTest, NearerParticlesCoverFartherOnesInAnyOrderOfEmitters) {
     ParticleEmitter far = resting({0, 0, -12}, 1.0F, 0.5F);
     ParticleEmitter near = resting({0, 0, -8}, 1.0F, 0.75F);
     near.albedo = {1.0F, 0.0F, 0.0F};
@@ -253,7 +253,7 @@ TEST_F(particles_draw, nearer_particles_cover_farther_ones_in_any_order_of_emitt
     expect_near(center({near, far}, {}), expected, 1e-5);
 }
 
-TEST_F(particles_draw, an_interval_holds_what_lies_between_its_panes) {
+TEST_F(ParticlesDrawTest, AnIntervalHoldsWhatLiesBetweenItsPanes) {
     ParticleEmitter far = resting({0, 0, -12}, 1.0F, 0.5F);
     ParticleEmitter near = resting({0, 0, -8}, 1.0F, 0.75F);
     near.albedo = {1.0F, 0.0F, 0.0F};
@@ -267,7 +267,7 @@ TEST_F(particles_draw, an_interval_holds_what_lies_between_its_panes) {
     expect_near(drawn({0, 1, 2, 3}), over(over(background, 4.0 * albedo, 0.5), {4.0, 0.0, 0.0}, 0.75), 1e-5);
 }
 
-TEST_F(particles_draw, fog_and_light_of_the_volume_at_the_particles_own_depth) {
+TEST_F(ParticlesDrawTest, FogAndLightOfTheVolumeAtTheParticlesOwnDepth) {
     const Fog fog;
     for (const double depth_m : {0.5, 2.0, 7.3, 20.0, 39.0}) {
         const double transmittance = std::exp(-fog.extinction_per_m * depth_m);
@@ -279,7 +279,7 @@ TEST_F(particles_draw, fog_and_light_of_the_volume_at_the_particles_own_depth) {
     }
 }
 
-TEST_F(particles_draw, sun_reaches_what_its_cascades_leave_lit) {
+TEST_F(ParticlesDrawTest, SunReachesWhatItsCascadesLeaveLit) {
     const ParticleEmitter particle = resting({0, 0, -10}, 1.0F, 0.4F);
     Picture picture{.light = {.sun_illuminance_lux = {400.0F, 300.0F, 200.0F}}};
     const glm::dvec3 sunlit = albedo * glm::dvec3(400, 300, 200) / (4.0 * std::numbers::pi);
@@ -290,7 +290,7 @@ TEST_F(particles_draw, sun_reaches_what_its_cascades_leave_lit) {
     expect_near(center({particle}, picture), over(background, {0.0, 0.0, 0.0}, 0.4), 1e-5);
 }
 
-TEST_F(particles_draw, local_lights_add_up) {
+TEST_F(ParticlesDrawTest, LocalLightsAddUp) {
     Picture picture;
     picture.shadow_depth = 1.0F;
     for (const float x : {3.0F, -4.0F}) {
@@ -306,7 +306,7 @@ TEST_F(particles_draw, local_lights_add_up) {
                 1e-5);
 }
 
-TEST_F(particles_draw, particles_below_a_pixel_keep_their_sum_and_do_not_vanish) {
+TEST_F(ParticlesDrawTest, ParticlesBelowAPixelKeepTheirSumAndDoNotVanish) {
     // A pixel is 0.154 m wide at the particle; its radius is a fifth of that.
     const float radius_m = 0.03F;
     const double pixel_m = 10.0 / size_px;
@@ -328,7 +328,7 @@ TEST_F(particles_draw, particles_below_a_pixel_keep_their_sum_and_do_not_vanish)
     EXPECT_GT(least, 0.4 * expected);
 }
 
-TEST_F(particles_draw, a_frame_is_a_function_of_its_time_alone) {
+TEST_F(ParticlesDrawTest, AFrameIsAFunctionOfItsTimeAlone) {
     ParticleEmitter smoke = resting({0, -1, -10}, 0.5F, 0.5F);
     smoke.kind = engine::ParticleKind::smoke;
     smoke.rate_per_s = 20.0;

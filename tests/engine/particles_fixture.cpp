@@ -2,14 +2,12 @@
 
 namespace tyndall::test {
 
-void ParticleTest::SetUp() {
-    auto instance = engine::VulkanInstance::create(engine::Validation::core_and_synchronization);
-    ASSERT_TRUE(instance.has_value()) << instance.error().message;
-    instance_.emplace(std::move(*instance));
-    auto device = engine::Device::create(*instance_);
-    ASSERT_TRUE(device.has_value()) << device.error().message;
-    device_.emplace(std::move(*device));
-    rg::ExecutorInfo info = device_->executor_info(false);
+void ParticleFrameTest::SetUp() {
+    DeviceTest::SetUp();
+    if (HasFatalFailure()) {
+        return;
+    }
+    rg::ExecutorInfo info = device().executor_info(false);
     if (mode_from_environment() == Mode::semaphores) {
         info.queues.push_back(info.queues.front());
         info.queues.back().kind = rg::QueueKind::compute;
@@ -19,18 +17,13 @@ void ParticleTest::SetUp() {
     executor_.emplace(std::move(*executor));
 }
 
-void ParticleTest::TearDown() {
+void ParticleFrameTest::TearDown() {
     executor_.reset();
     buffers_.clear();
-    device_.reset();
-    if (instance_) {
-        for (const std::string& error : instance_->log().errors()) {
-            ADD_FAILURE() << "validation: " << error;
-        }
-    }
+    DeviceTest::TearDown();
 }
 
-void ParticleTest::run(const rg::DeclaredGraph& graph, std::span<const rg::ImportBinding> imports) {
+void ParticleFrameTest::run(const rg::DeclaredGraph& graph, std::span<const rg::ImportBinding> imports) {
     rg::QueueTopology topology = executor_->topology();
     if (mode_from_environment() == Mode::folded) {
         topology = {{{rg::QueueKind::graphics, 0, rg::can_graphics | rg::can_compute | rg::can_transfer},
@@ -48,20 +41,20 @@ void ParticleTest::run(const rg::DeclaredGraph& graph, std::span<const rg::Impor
     ASSERT_TRUE(waited.has_value()) << waited.error().message;
 }
 
-void ParticleTest::record_and_wait(const rg::DeclaredGraph& graph, const rg::Plan& plan,
-                                   std::span<const rg::ImportBinding> imports) {
-    const rg::DeviceTable& vk = device_->vk();
-    const rg::DeviceQueue& queue = device_->graphics_queue();
+void ParticleFrameTest::record_and_wait(const rg::DeclaredGraph& graph, const rg::Plan& plan,
+                                        std::span<const rg::ImportBinding> imports) {
+    const rg::DeviceTable& vk = device().vk();
+    const rg::DeviceQueue& queue = device().graphics_queue();
     const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                             .queueFamilyIndex = queue.family};
     VkCommandPool pool = VK_NULL_HANDLE;
-    ASSERT_EQ(vk.CreateCommandPool(device_->handle(), &pool_info, nullptr, &pool), VK_SUCCESS);
+    ASSERT_EQ(vk.CreateCommandPool(device().handle(), &pool_info, nullptr, &pool), VK_SUCCESS);
     const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                                .commandPool = pool,
                                                .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                                .commandBufferCount = 1};
     VkCommandBuffer cmd = VK_NULL_HANDLE;
-    ASSERT_EQ(vk.AllocateCommandBuffers(device_->handle(), &allocate, &cmd), VK_SUCCESS);
+    ASSERT_EQ(vk.AllocateCommandBuffers(device().handle(), &allocate, &cmd), VK_SUCCESS);
     const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                          .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     ASSERT_EQ(vk.BeginCommandBuffer(cmd, &begin), VK_SUCCESS);
@@ -72,12 +65,12 @@ void ParticleTest::record_and_wait(const rg::DeclaredGraph& graph, const rg::Pla
     const VkSubmitInfo2 submit{
         .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &buffer};
     ASSERT_EQ(vk.QueueSubmit2(queue.queue, 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
-    device_->wait_idle();
-    vk.DestroyCommandPool(device_->handle(), pool, nullptr);
+    device().wait_idle();
+    vk.DestroyCommandPool(device().handle(), pool, nullptr);
 }
 
-engine::Buffer& ParticleTest::host_buffer(VkDeviceSize size_bytes) {
-    auto made = engine::Buffer::create(*device_, size_bytes,
+engine::Buffer& ParticleFrameTest::host_buffer(VkDeviceSize size_bytes) {
+    auto made = engine::Buffer::create(device(), size_bytes,
                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                        engine::MemoryUse::readback);

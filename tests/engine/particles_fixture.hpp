@@ -1,5 +1,4 @@
-// The engine's device with core and synchronisation validation, and an executor. Any validation error fails the test.
-// TYNDALL_TEST_MODE as in tests/gpu/gpu_fixture.hpp.
+// The engine's device and an executor on it. TYNDALL_TEST_MODE as in tests/gpu/gpu_fixture.hpp.
 #pragma once
 
 #include <algorithm>
@@ -8,19 +7,18 @@
 #include <optional>
 #include <span>
 
-#include "engine/device.hpp"
 #include "engine/frame.hpp"
 #include "engine/memory.hpp"
+#include "tests/engine/device_fixture.hpp"
 #include "tests/gpu/gpu_fixture.hpp"
 
 namespace tyndall::test {
 
-class ParticleTest : public testing::Test {
+class ParticleFrameTest : public engine::DeviceTest {
 protected:
     void SetUp() override;
     void TearDown() override;
 
-    [[nodiscard]] const engine::Device& device() const { return *device_; }
     /// Compiles and executes one frame to its end; any error fails the test.
     void run(const rg::DeclaredGraph& graph, std::span<const rg::ImportBinding> imports);
 
@@ -37,8 +35,6 @@ private:
     void record_and_wait(const rg::DeclaredGraph& graph, const rg::Plan& plan,
                          std::span<const rg::ImportBinding> imports);
 
-    std::optional<engine::VulkanInstance> instance_;
-    std::optional<engine::Device> device_;
     std::optional<rg::Executor> executor_;
     std::deque<engine::Buffer> buffers_;
 };

@@ -22,7 +22,7 @@ std::string error_of(const std::string& text) {
     return parsed ? "" : parsed.error().message;
 }
 
-TEST(particles_json, reads_every_key) {
+TEST(ParticlesJson, ReadsEveryKey) {
     const auto parsed = parse_particles_json(file(
         R"(, "box_half_extent_m": [0.5, 0, 2], "velocity_m_s": [1, -2, 3], "velocity_spread_m_s": [4, 5, 6],)"
         R"( "buoyancy_m_s2": -0.5, "drag_per_s": 0.25, "turbulence_m_s": 0.125, "albedo": [0.5, 1, 0], "seed": 7)"));
@@ -48,7 +48,7 @@ TEST(particles_json, reads_every_key) {
     EXPECT_EQ(particle_slots(emitter), 11U);
 }
 
-TEST(particles_json, optional_keys_have_defaults_and_the_seed_is_the_index) {
+TEST(ParticlesJson, OptionalKeysHaveDefaultsAndTheSeedIsTheIndex) {
     const std::string one = file("");
     const std::string two = file("", "b");
     const std::string emitter_b = two.substr(two.find('{', 1), two.size() - two.find('{', 1) - 2);
@@ -62,7 +62,7 @@ TEST(particles_json, optional_keys_have_defaults_and_the_seed_is_the_index) {
     EXPECT_EQ(particle_key_count(22), 32U);
 }
 
-TEST(particles_json, an_empty_list_is_allowed) {
+TEST(ParticlesJson, AnEmptyListIsAllowed) {
     const auto parsed = parse_particles_json(R"({"emitters": []})");
     ASSERT_TRUE(parsed.has_value());
     EXPECT_TRUE(parsed->empty());
@@ -73,7 +73,7 @@ struct Mistake {
     std::string sentence;
 };
 
-TEST(particles_json, each_mistake_names_its_key) {
+TEST(ParticlesJson, EachMistakeNamesItsKey) {
     const std::string long_life = R"({"emitters": [{"name": "a", "kind": "dust", "position_m": [0, 0, 0],)"
                                   R"( "rate_per_s": 1000, "lifetime_s": 1000, "start_radius_m": 1, "end_radius_m": 1,)"
                                   R"( "opacity": 1}]})";
@@ -108,7 +108,7 @@ TEST(particles_json, each_mistake_names_its_key) {
     }
 }
 
-TEST(particles_json, impossible_values_of_required_keys) {
+TEST(ParticlesJson, ImpossibleValuesOfRequiredKeys) {
     const auto with = [](const std::string& key, const std::string& value) {
         std::string text = file("");
         const std::size_t start = text.find("\"" + key + "\": ") + key.size() + 4;
@@ -127,7 +127,7 @@ TEST(particles_json, impossible_values_of_required_keys) {
               "The particle file holds a number that is too large for double precision.");
 }
 
-TEST(particles_json, names_are_unique_and_the_total_is_bounded) {
+TEST(ParticlesJson, NamesAreUniqueAndTheTotalIsBounded) {
     const auto emitter = [](const std::string& name, const std::string& rate) {
         return R"({"name": ")" + name + R"(", "kind": "dust", "position_m": [0, 0, 0], "rate_per_s": )" + rate +
                R"(, "lifetime_s": 10, "start_radius_m": 1, "end_radius_m": 1, "opacity": 1})";

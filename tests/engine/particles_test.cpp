@@ -81,10 +81,10 @@ struct Simulated {
     std::vector<Key> keys;
 };
 
-class particles : public ParticleTest {
+class ParticlesTest : public ParticleFrameTest {
 protected:
     void SetUp() override {
-        ParticleTest::SetUp();
+        ParticleFrameTest::SetUp();
         ASSERT_FALSE(HasFatalFailure());
         auto made = engine::ParticlePasses::create(device(), VK_NULL_HANDLE);
         ASSERT_TRUE(made.has_value()) << made.error().message;
@@ -92,7 +92,7 @@ protected:
     }
     void TearDown() override {
         passes_.reset();
-        ParticleTest::TearDown();
+        ParticleFrameTest::TearDown();
     }
 
     [[nodiscard]] Simulated simulate(const engine::FrameView& view, const std::vector<ParticleEmitter>& emitters) {
@@ -156,7 +156,7 @@ protected:
     std::optional<engine::ParticlePasses> passes_;
 };
 
-TEST_F(particles, simulation_agrees_with_the_double_precision_model) {
+TEST_F(ParticlesTest, SimulationAgreesWithTheDoublePrecisionModel) {
     const std::vector<ParticleEmitter> emitters = three_emitters();
     for (const double time_s : {0.0, 1.0, 1e4, -3.7}) {
         // Far from the world's origin the numbers must not get coarser.
@@ -199,7 +199,7 @@ TEST_F(particles, simulation_agrees_with_the_double_precision_model) {
     }
 }
 
-TEST_F(particles, everything_is_finite_at_any_time) {
+TEST_F(ParticlesTest, EverythingIsFiniteAtAnyTime) {
     for (const double time_s : {1e9, -1e9, 1e15, 1e300}) {
         const Simulated result = simulate(view_at({0.0, 1.0, 6.0}, time_s), three_emitters());
         for (const gpu::GpuParticle& particle : result.particles) {
@@ -212,7 +212,7 @@ TEST_F(particles, everything_is_finite_at_any_time) {
     }
 }
 
-TEST_F(particles, a_particle_keeps_its_slot_and_moves_smoothly) {
+TEST_F(ParticlesTest, AParticleKeepsItsSlotAndMovesSmoothly) {
     const std::vector<ParticleEmitter> emitters = three_emitters();
     constexpr double step_s = 1e-3;
     constexpr double fastest_m_s = 25.0;
@@ -226,7 +226,7 @@ TEST_F(particles, a_particle_keeps_its_slot_and_moves_smoothly) {
     EXPECT_LE(jumps, 1U); // a birth, at most
 }
 
-TEST_F(particles, what_is_outside_the_view_is_not_drawn) {
+TEST_F(ParticlesTest, WhatIsOutsideTheViewIsNotDrawn) {
     std::vector<ParticleEmitter> emitters = three_emitters();
     const auto drawn = [&](const glm::dvec3& origin_m) {
         const Simulated result = simulate(view_at(origin_m, 4.0), emitters);
@@ -241,7 +241,7 @@ TEST_F(particles, what_is_outside_the_view_is_not_drawn) {
     EXPECT_EQ(drawn({0.0, 120.0, 6.0}), 0); // below
 }
 
-TEST_F(particles, sort_orders_and_keeps_every_key) {
+TEST_F(ParticlesTest, SortOrdersAndKeepsEveryKey) {
     std::mt19937 random(20240607);
     // One key block and several, and a network of fewer keys than lanes.
     for (const std::uint32_t count : {2U, 64U, 2048U, 4096U, 16384U}) {
@@ -259,7 +259,7 @@ TEST_F(particles, sort_orders_and_keeps_every_key) {
     }
 }
 
-TEST_F(particles, keys_order_depths_back_to_front) {
+TEST_F(ParticlesTest, KeysOrderDepthsBackToFront) {
     const float infinity = std::numeric_limits<float>::infinity();
     const std::array<float, 9> far_to_near{infinity, 1e30F, 7.5F, 1e-30F, 0.0F, -1e-30F, -7.5F, -1e30F, -infinity};
     for (std::size_t i = 1; i < far_to_near.size(); ++i) {
@@ -269,7 +269,7 @@ TEST_F(particles, keys_order_depths_back_to_front) {
     EXPECT_LT(model_depth_key(-infinity), not_drawn);
 }
 
-TEST_F(particles, split_covers_every_drawn_particle_once_between_its_depths) {
+TEST_F(ParticlesTest, SplitCoversEveryDrawnParticleOnceBetweenItsDepths) {
     std::mt19937 random(7);
     const auto random_depth = [&] { return 0.5F * static_cast<float>(static_cast<int>(random() % 81U) - 20); };
     for (const std::size_t splits : {0U, 1U, 5U, 200U}) {

@@ -79,7 +79,7 @@ TEST(TangentSpace, GivenTangentsAreNormalisedAndBrokenOnesReplaced) {
     repair_tangents(square);
     EXPECT_EQ(square.tangents[0], glm::vec4(1, 0, 0, 1));
     EXPECT_EQ(square.tangents[1], glm::vec4(0, 1, 0, -1));
-    for (const std::size_t i : {2, 3}) {
+    for (std::size_t i = 2; i < 4; ++i) {
         EXPECT_NEAR(glm::length(glm::vec3(square.tangents[i])), 1.0F, 1e-6F) << i;
     }
 }

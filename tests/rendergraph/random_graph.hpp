@@ -37,15 +37,12 @@ inline DeclaredGraph random_frame(std::uint32_t seed) {
             slot.written = true;
             break;
         case 2:
-            slot.image = graph.create_image(name, {.format = VK_FORMAT_R32_SFLOAT,
-                                                   .extent = {16, 16, 1},
-                                                   .mips = 1 + below(3),
-                                                   .layers = 1 + below(3)});
+            slot.image = graph.create_image(
+                name,
+                {.format = VK_FORMAT_R32_SFLOAT, .extent = {16, 16, 1}, .mips = 1 + below(3), .layers = 1 + below(3)});
             break;
         case 3: slot.image = graph.create_image(name, color_image(16, 16)); break;
-        default:
-            slot.image = graph.import_image(name, color_image(16, 16), left_for_host());
-            break;
+        default: slot.image = graph.import_image(name, color_image(16, 16), left_for_host()); break;
         }
         slots.push_back(slot);
     }
@@ -99,8 +96,7 @@ inline DeclaredGraph random_frame(std::uint32_t seed) {
             } else {
                 const ImageDesc& desc = *graph.describe(slots[i].image);
                 const ImageRange range =
-                    below(2) == 0 ? ImageRange{}
-                                  : ImageRange{below(desc.mips), 1, below(desc.layers), 1};
+                    below(2) == 0 ? ImageRange{} : ImageRange{below(desc.mips), 1, below(desc.layers), 1};
                 pass.reads(slots[i].image, graphics ? Access::sampled_fragment : Access::sampled_compute, range);
             }
         }
@@ -127,7 +123,8 @@ inline DeclaredGraph random_frame(std::uint32_t seed) {
                                                  : Access::storage_compute;
                 if (slots[i].written && below(2) == 0) {
                     pass.modifies(slots[i].image, access,
-                                  attachment || below(2) == 0 ? ImageRange{} : ImageRange{below(desc.mips), 1, below(desc.layers), 1});
+                                  attachment || below(2) == 0 ? ImageRange{}
+                                                              : ImageRange{below(desc.mips), 1, below(desc.layers), 1});
                 } else {
                     pass.writes(slots[i].image, access);
                 }

@@ -133,8 +133,8 @@ bool overlap_bytes(Plan& plan, std::uint32_t place) {
 
 TEST(Verify, MutationsOfRandomPlansAreCaught) {
     const std::map<std::string, Mutation> mutations = {
-        {"narrow the source access", narrow_source}, {"narrow the destination access", narrow_destination},
-        {"wrong old layout", wrong_old_layout},      {"drop a wait", drop_wait},
+        {"narrow the source access", narrow_source},  {"narrow the destination access", narrow_destination},
+        {"wrong old layout", wrong_old_layout},       {"drop a wait", drop_wait},
         {"wait for the future", wait_for_the_future}, {"drop a release", drop_release},
         {"overlap aliased bytes", overlap_bytes}};
     for (const auto& [name, mutate] : mutations) {

@@ -108,7 +108,7 @@ TEST_F(BadInput, FogWithImpossibleValue) {
                    {"medium.homogeneous.extinction_per_m"});
 }
 TEST_F(BadInput, ParticlesWithUnknownKey) {
-    write_text(folder_ / "particles.json", R"({"emitters":[{"nonsense":1}]})");
+    write_text(folder_ / "particles.json", R"({"emitters":[],"nonsense":1})");
     expect_refused(render({"--particles", (folder_ / "particles.json").string()}), {"particles.json", "nonsense"});
 }
 
