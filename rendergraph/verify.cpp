@@ -1,6 +1,7 @@
 #include "rendergraph/verify_types.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace tyndall::rg {
 namespace {
@@ -78,34 +79,12 @@ private:
     /// One dependency recorded on `queue`, all of one vkCmdPipelineBarrier2 at once.
     void barriers(std::uint32_t queue, const std::vector<const Dependency*>& dependencies, bool is_release,
                   std::uint32_t before_pass) {
-        struct Effect {
-            VkPipelineStageFlags2 src, dst;
-            VkAccessFlags2 src_access, dst_access;
-            const Dependency* d;
-            bool transition;
-        };
         std::vector<Effect> effects;
         for (const Dependency* d : dependencies) {
-            const bool release_half = is_release && d->transfers_ownership && d->consumer != none;
-            const bool acquire_half = !is_release && d->transfers_ownership;
-            const bool crosses = d->src_queue != d->dst_queue && !is_release;
-            const bool transition = d->old_layout != d->new_layout && !release_half;
-            Effect effect{d->src_stages, d->dst_stages, d->src_access, d->dst_access, d, transition};
-            if (crosses) {
-                effect.src = d->local_stages;
-                effect.src_access = d->local_access;
-                if (transition || acquire_half) {
-                    effect.src = all_commands; // chained to the semaphore wait
-                } else if (effect.src == 0) {
-                    continue; // the semaphore is all there is
-                }
+            if (const std::optional<Effect> effect = effect_of(*d, is_release)) {
+                check_stages(queue, effect->src | effect->dst, before_pass, d->resource);
+                effects.push_back(*effect);
             }
-            if (release_half) {
-                effect.dst = 0;
-                effect.dst_access = 0;
-            }
-            check_stages(queue, effect.src | effect.dst, before_pass, d->resource);
-            effects.push_back(effect);
         }
         // Transitions are ordered after what their source scope names, before the reaches grow.
         for (const Effect& effect : effects) {

@@ -73,6 +73,27 @@ std::vector<Violation> check_form(const GraphDesc& graph, const Plan& plan) {
     return found;
 }
 
+std::optional<Effect> effect_of(const Dependency& d, bool is_release) {
+    const bool release_half = is_release && d.transfers_ownership && d.consumer != none;
+    const bool acquire_half = !is_release && d.transfers_ownership;
+    const bool transition = d.old_layout != d.new_layout && !release_half;
+    Effect effect{d.src_stages, d.dst_stages, d.src_access, d.dst_access, &d, transition};
+    if (d.src_queue != d.dst_queue && !is_release) {
+        effect.src = d.local_stages;
+        effect.src_access = d.local_access;
+        if (transition || acquire_half) {
+            effect.src = all_commands; // chained to the semaphore wait
+        } else if (effect.src == 0) {
+            return std::nullopt;
+        }
+    }
+    if (release_half) {
+        effect.dst = 0;
+        effect.dst_access = 0;
+    }
+    return effect;
+}
+
 bool share_bytes(const Plan& plan, std::uint32_t a, std::uint32_t b) {
     const Placement& pa = plan.placements[a];
     const Placement& pb = plan.placements[b];

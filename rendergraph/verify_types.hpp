@@ -2,6 +2,8 @@
 // shares nothing with the stages of compile.
 #pragma once
 
+#include <optional>
+
 #include "rendergraph/verify.hpp"
 
 namespace tyndall::rg::checker {
@@ -97,6 +99,16 @@ struct Atom {
     bool released = false;                         ///< to `released_to`, not yet acquired
     std::uint32_t released_to = VK_QUEUE_FAMILY_IGNORED;
 };
+
+/// What recording one dependency does.
+struct Effect {
+    VkPipelineStageFlags2 src, dst;
+    VkAccessFlags2 src_access, dst_access;
+    const Dependency* d;
+    bool transition;
+};
+/// Recorded at a batch's end (`is_release`) or before its consumer; nothing where a semaphore is all that it needs.
+[[nodiscard]] std::optional<Effect> effect_of(const Dependency& d, bool is_release);
 
 /// The parts of a resource that its accesses tell apart, each in its state when the frame begins.
 [[nodiscard]] std::vector<Atom> make_atoms(const GraphDesc& graph, const Plan& plan, std::uint32_t resource);
