@@ -86,15 +86,14 @@ private:
                 effects.push_back(*effect);
             }
         }
-        // Transitions are ordered after what their source scope names, before the reaches grow.
+        // Transitions come after what their source scope names, and before the reaches grow.
         for (const Effect& effect : effects) {
             ownership(*effect.d, is_release, before_pass);
             if (effect.transition) {
                 transition(*effect.d, queue, effect.src, before_pass);
             }
         }
-        const std::size_t count = events_.size();
-        for (std::size_t e = 0; e < count; ++e) {
+        for (std::size_t e = 0; e < events_.size(); ++e) {
             if (retired(e)) {
                 continue;
             }
@@ -215,7 +214,7 @@ private:
             // What it covers was ordered before it, so later accesses need only be ordered after it.
             for (const std::uint32_t e : events_of_[event.resource]) {
                 if (event.region.contains(events_[e].region)) {
-                    retire(e);
+                    events_[e].reach.clear();
                 }
             }
             std::erase_if(events_of_[event.resource], [&](std::uint32_t e) { return retired(e); });
@@ -223,7 +222,6 @@ private:
         events_of_[event.resource].push_back(static_cast<std::uint32_t>(events_.size()));
         events_.push_back(std::move(event));
     }
-    void retire(std::size_t e) { events_[e].reach.clear(); }
     [[nodiscard]] bool retired(std::size_t e) const { return events_[e].reach.empty(); }
 
     template <typename F>
@@ -295,10 +293,9 @@ private:
             report(ViolationCode::malformed, planned.pass, none, none,
                    "pass " + pass_name(planned.pass) + " and its batch are on different queues");
         }
-        std::uint8_t needs = 0;
-        if (desc.kind != PassKind::host && desc.kind != PassKind::transfer) {
-            needs = desc.kind == PassKind::graphics ? std::uint8_t{can_graphics} : std::uint8_t{can_compute};
-        }
+        const int needs = desc.kind == PassKind::graphics  ? can_graphics
+                          : desc.kind == PassKind::compute ? can_compute
+                                                           : 0;
         if ((plan_.topology.queues[queue].capabilities & needs) != needs) {
             report(ViolationCode::queue_cannot, planned.pass, none, none,
                    "pass " + pass_name(planned.pass) + " is on a queue that cannot run it");
@@ -389,6 +386,9 @@ private:
         add_events(event, region);
     }
 
+    [[nodiscard]] bool touched(std::uint32_t r) const {
+        return !events_of_[r].empty() && events_of_[r].back() >= host_events_;
+    }
     void exits() {
         for (std::uint32_t d = plan_.first_exit_barrier; d < plan_.first_exit_barrier + plan_.exit_barrier_count; ++d) {
             // Stages that ran on other queues were waited for by the last use; this queue names them as all commands.
@@ -411,15 +411,12 @@ private:
             } else if (resource.has_history) {
                 wanted = plan_.placements[r].resting_layout;
             }
-            const bool touched = std::any_of(events_of_[r].begin(), events_of_[r].end(),
-                                             [&](std::uint32_t e) { return e >= host_events_; });
-            for (const Atom& atom : atoms_[r]) {
-                if (touched && resource.kind == ResourceKind::image && wanted != VK_IMAGE_LAYOUT_UNDEFINED &&
-                    atom.layout != wanted) {
-                    report(ViolationCode::exit_state, none, none, r,
-                           resource_name(r) + " is not left in the layout that was agreed");
-                    break;
-                }
+            const bool left_as_agreed =
+                resource.kind != ResourceKind::image || wanted == VK_IMAGE_LAYOUT_UNDEFINED || !touched(r) ||
+                std::all_of(atoms_[r].begin(), atoms_[r].end(), [&](const Atom& a) { return a.layout == wanted; });
+            if (!left_as_agreed) {
+                report(ViolationCode::exit_state, none, none, r,
+                       resource_name(r) + " is not left in the layout that was agreed");
             }
         }
     }
@@ -429,11 +426,7 @@ private:
         if (!event.writes || import.final_stages == 0 || e < host_events_) {
             return;
         }
-        const bool visible = std::any_of(event.reach.begin(), event.reach.end(), [&](const Reach& reach) {
-            return event.available && covers_stages(reach.visible_stages, import.final_stages) &&
-                   covers_access(reach.visible_access, import.final_access);
-        });
-        if (!visible) {
+        if (!visible_anywhere(event, import.final_stages, import.final_access)) {
             report(ViolationCode::exit_state, event.pass, none, r,
                    resource_name(r) + " is not visible to the host's next access when the frame ends");
         }

@@ -94,6 +94,12 @@ std::optional<Effect> effect_of(const Dependency& d, bool is_release) {
     return effect;
 }
 
+bool visible_anywhere(const Event& event, VkPipelineStageFlags2 stages, VkAccessFlags2 access) {
+    return event.available && std::any_of(event.reach.begin(), event.reach.end(), [&](const Reach& reach) {
+               return covers_stages(reach.visible_stages, stages) && covers_access(reach.visible_access, access);
+           });
+}
+
 bool share_bytes(const Plan& plan, std::uint32_t a, std::uint32_t b) {
     const Placement& pa = plan.placements[a];
     const Placement& pb = plan.placements[b];

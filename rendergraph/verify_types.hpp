@@ -100,6 +100,9 @@ struct Atom {
     std::uint32_t released_to = VK_QUEUE_FAMILY_IGNORED;
 };
 
+/// What `event` wrote is visible, on some queue, to such an access.
+[[nodiscard]] bool visible_anywhere(const Event& event, VkPipelineStageFlags2 stages, VkAccessFlags2 access);
+
 /// What recording one dependency does.
 struct Effect {
     VkPipelineStageFlags2 src, dst;
