@@ -57,7 +57,8 @@ tl::expected<void, Error> Renderer::make(VkPipelineCache cache, std::uint32_t fr
         return tl::unexpected(scene_gpu.error());
     }
     scene_gpu_ = std::move(*scene_gpu);
-    pipelines_.emplace(*device_, cache, scene_gpu_.materials.layout.get(), settings_.color_format);
+    pipelines_.emplace(*device_, cache, scene_gpu_.materials.layout.get(), settings_.color_format,
+                       static_cast<std::uint32_t>(lights_.local.size()));
     auto frame_data = FrameData::create(*device_, frames_in_flight, scene_.instances.size(), lights_.local.size());
     if (!frame_data) {
         return tl::unexpected(frame_data.error());

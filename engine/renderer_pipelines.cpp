@@ -93,6 +93,11 @@ constexpr std::uint32_t mask_features = feature_base_color_texture | feature_uv_
 
 } // namespace
 
+std::uint32_t RendererPipelines::unrolled_lights(const Device& device, std::uint32_t light_count) {
+    constexpr std::uint32_t most = 32; // bits of a word of a cluster's mask
+    return device.is_lavapipe() && light_count <= most ? light_count : 0;
+}
+
 tl::expected<VkPipelineLayout, Error> RendererPipelines::layout(const LayoutKey& key) {
     if (const auto found = layouts_.find(key); found != layouts_.end()) {
         return found->second.pipeline.get();
@@ -196,7 +201,7 @@ tl::expected<Program, Error> RendererPipelines::depth(DepthTarget target, bool m
 
 tl::expected<Program, Error> RendererPipelines::forward(const ForwardVariant& variant, std::uint32_t features) {
     return find_or_make({{Kind::forward, variant}, false, features}, [&](VkPipelineLayout pipeline_layout) {
-        const SpecializationConstant constant{0, features};
+        const std::array<SpecializationConstant, 2> constants = {{{0, features}, {1, unrolled_lights_}}};
         constexpr VkColorComponentFlags rgba =
             VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
         const VkPipelineColorBlendAttachmentState premultiplied{
@@ -214,7 +219,7 @@ tl::expected<Program, Error> RendererPipelines::forward(const ForwardVariant& va
             {.layout = pipeline_layout,
              .vertex_spirv = forward_vertex,
              .fragment_spirv = forward_spirv(variant),
-             .constants = {&constant, 1},
+             .constants = constants,
              .vertex_bindings = vertex_bindings(true),
              .vertex_attributes = vertex_attributes(true),
              .color_formats = {&color_format_, 1},

@@ -37,10 +37,11 @@ struct Program {
 
 class RendererPipelines {
 public:
-    /// `materials`: the layout of set 1, which outlives this.
+    /// `materials`: the layout of set 1, which outlives this. `light_count`: point and spot lights of every frame.
     RendererPipelines(const Device& device, VkPipelineCache cache, VkDescriptorSetLayout materials,
-                      VkFormat color_format)
-        : device_(&device), cache_(cache), materials_(materials), color_format_(color_format) {}
+                      VkFormat color_format, std::uint32_t light_count)
+        : device_(&device), cache_(cache), materials_(materials), color_format_(color_format),
+          unrolled_lights_(unrolled_lights(device, light_count)) {}
 
     // `features` as in materials_gpu.hpp.
     [[nodiscard]] tl::expected<Program, Error> depth(DepthTarget target, bool mask, std::uint32_t features);
@@ -85,6 +86,7 @@ private:
         DescriptorSetLayout set;
         PipelineLayout pipeline;
     };
+    [[nodiscard]] static std::uint32_t unrolled_lights(const Device& device, std::uint32_t light_count);
     [[nodiscard]] tl::expected<VkPipelineLayout, Error> layout(const LayoutKey& key);
     template <typename Make>
     [[nodiscard]] tl::expected<Program, Error> find_or_make(const PipelineKey& key, Make&& make);
@@ -94,6 +96,7 @@ private:
     VkPipelineCache cache_;
     VkDescriptorSetLayout materials_;
     VkFormat color_format_;
+    std::uint32_t unrolled_lights_; ///< see forward.frag
     std::map<LayoutKey, Layout> layouts_;
     std::map<PipelineKey, Pipeline> pipelines_;
 };

@@ -1,7 +1,6 @@
 #include "rendergraph/verify_types.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace tyndall::rg {
 namespace {
@@ -106,8 +105,7 @@ private:
                 const Event& event = events_[e];
                 const Region covered =
                     region_of(graph_.resources[effect.d->resource], effect.d->image_range, effect.d->buffer_range);
-                // Memory: the barrier's own range, or bytes that its resource took over (the executor adds a global
-                // memory barrier there).
+                // Memory: the barrier's own range, or bytes taken over (the executor adds a global barrier there).
                 const bool same = event.resource == effect.d->resource && covered.contains(event.region);
                 const bool aliased =
                     effect.d->hazard == Hazard::aliased_memory && share_bytes(event.resource, effect.d->resource);

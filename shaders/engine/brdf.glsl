@@ -2,44 +2,36 @@
 #ifndef TYNDALL_SHADERS_ENGINE_BRDF_GLSL
 #define TYNDALL_SHADERS_ENGINE_BRDF_GLSL
 
+const float pi = 3.14159265;
 const float inverse_pi = 0.318309886;
 
-// What a point reflects with, view-independent.
+// What a point reflects with, seen from the eye.
 struct Reflection {
-    vec3 diffuse;        // albedo of the Lambert layer, before what the layer above takes
-    vec3 f0;             // reflectance at normal incidence
-    float f90;           // at grazing incidence
-    vec2 dielectric_f;   // largest component of the dielectric part's reflectance: at normal, at grazing incidence
-    float alpha;         // roughness squared
+    vec3 diffuse;     // albedo of the Lambert layer over pi, before what the layer above takes
+    vec3 f0;          // reflectance at normal incidence
+    vec3 f_rise;      // what grazing incidence adds to it
+    vec2 transmitted; // x + y weight: what the dielectric layer lets through at Schlick's weight
+    float a2;         // roughness^4
+    float n_v;        // cosine toward the eye, above 0
+    float smith_v;    // of the eye's direction
 };
 
-// Schlick 1994.
-float schlick_weight(float cosine) {
-    float m = clamp(1.0 - cosine, 0.0, 1.0);
-    float m2 = m * m;
-    return m2 * m2 * m;
-}
+// Smith's height-correlated term for one direction (Heitz 2014).
+float smith(float cosine, float a2) { return sqrt(cosine * cosine * (1.0 - a2) + a2); }
 
-// Outgoing radiance toward `to_eye` for a unit of irradiance on a surface that faces the light, the cosine included.
-vec3 reflect_light(Reflection r, vec3 normal, vec3 to_eye, float n_v, vec3 to_light) {
-    float n_l = dot(normal, to_light);
-    if (n_l <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 between = to_light + to_eye;
-    vec3 half_vector = between * inversesqrt(max(dot(between, between), 1e-12));
-    float n_h = clamp(dot(normal, half_vector), 0.0, 1.0);
-    float weight = schlick_weight(dot(to_light, half_vector));
-    vec3 f = r.f0 + (r.f90 - r.f0) * weight;
-    float transmitted = 1.0 - mix(r.dielectric_f.x, r.dielectric_f.y, weight);
-    // GGX (Walter et al. 2007); the visibility term is Smith's, height-correlated (Heitz 2014), with the reflection's
-    // 1 / (4 n_l n_v) in it.
-    float a2 = r.alpha * r.alpha;
-    float d = (n_h * a2 - n_h) * n_h + 1.0;
-    float visibility =
-        0.5 / (n_l * sqrt(n_v * n_v * (1.0 - a2) + a2) + n_v * sqrt(n_l * n_l * (1.0 - a2) + a2));
-    float specular = a2 * inverse_pi / (d * d) * visibility;
-    return (r.diffuse * (inverse_pi * transmitted) + f * specular) * n_l;
+// Outgoing radiance toward `to_eye` for a unit of irradiance on a surface that faces the light, the cosine n_l > 0
+// included. GGX (Walter et al. 2007) and Schlick 1994 by the length q^(1/2) of `to_light + to_eye`, which is not
+// normalised: n_h = (n_l + n_v) / q^(1/2), l_h = q^(1/2) / 2.
+vec3 reflect_light(Reflection r, vec3 to_eye, vec3 to_light, float n_l) {
+    float q = max(2.0 + 2.0 * dot(to_light, to_eye), 1e-6);
+    float m = max(1.0 - 0.5 * sqrt(q), 0.0);
+    float m2 = m * m;
+    float weight = m2 * m2 * m;
+    float n_sum = n_l + r.n_v;
+    float d = max(q - n_sum * n_sum * (1.0 - r.a2), q * r.a2); // q times GGX's (n_h^2 (a2 - 1) + 1)
+    float visibility = n_l * r.smith_v + r.n_v * smith(n_l, r.a2);
+    float specular = 0.5 * inverse_pi * r.a2 * q * q / (d * d * visibility);
+    return (r.diffuse * (r.transmitted.x + r.transmitted.y * weight) + (r.f0 + r.f_rise * weight) * specular) * n_l;
 }
 
 // Share of an even surrounding radiance that the microfacet layer sends to the eye is f0 x + f90 y: an analytic fit to

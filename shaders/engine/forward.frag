@@ -5,6 +5,7 @@
 //   SCATTERING   1: (with TRANSPARENT) fogged at the fragment's own depth
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #include "engine/brdf.glsl"
 #include "engine/material.glsl"
@@ -16,6 +17,9 @@ layout(set = 0, binding = 0) uniform Frame { FrameParameters frame; };
 #if LIGHTS
 #include "common/lights.glsl"
 layout(set = 0, binding = 4, std430) readonly restrict buffer Lights { GpuLight lights[]; };
+// 1 to 32: the number of lights, each of which has code of its own. A processor that runs shaders loads from a storage
+// buffer at a constant place once for eight pixels, and elsewhere pixel by pixel. 0: a loop.
+layout(constant_id = 1) const uint unrolled_lights = 0u;
 #endif
 #if LIGHTS == 2
 #include "common/light_clusters.glsl"
@@ -69,7 +73,7 @@ vec3 shading_normal(vec3 geometric) {
     return unit(turned + mapped.z * geometric);
 }
 
-Reflection make_reflection(vec3 base, float metallic, float roughness) {
+Reflection make_reflection(vec3 base, float metallic, float roughness, float n_v) {
     float specular = material.specular.w;
     vec3 specular_color = material.specular.rgb;
     if (has_texture(specular_slot)) {
@@ -79,12 +83,15 @@ Reflection make_reflection(vec3 base, float metallic, float roughness) {
         specular_color *= texture(specular_color_texture, slot_uv(specular_color_slot, surface_uv)).rgb;
     }
     vec3 dielectric_f0 = min(0.04 * specular_color, vec3(1.0)) * specular;
+    float taken = max(dielectric_f0.r, max(dielectric_f0.g, dielectric_f0.b)); // KHR_materials_specular
     Reflection r;
-    r.diffuse = base * (1.0 - metallic);
+    r.diffuse = base * ((1.0 - metallic) * inverse_pi);
     r.f0 = mix(dielectric_f0, base, metallic);
-    r.f90 = mix(specular, 1.0, metallic);
-    r.dielectric_f = vec2(max(dielectric_f0.r, max(dielectric_f0.g, dielectric_f0.b)), specular);
-    r.alpha = roughness * roughness;
+    r.f_rise = mix(specular, 1.0, metallic) - r.f0;
+    r.transmitted = vec2(1.0 - taken, taken - specular);
+    r.a2 = roughness * roughness * roughness * roughness;
+    r.n_v = n_v;
+    r.smith_v = smith(n_v, r.a2);
     return r;
 }
 
@@ -93,30 +100,55 @@ vec3 ambient_radiance(vec3 direction) {
 }
 
 #if LIGHTS
-vec3 local_light(uint index, Reflection r, vec3 normal, vec3 to_eye, float n_v) {
+vec3 local_light(GpuLight light, Reflection r, vec3 normal, vec3 to_eye) {
+    vec3 d = light.position_range.xyz - surface_position;
+    if (dot(d, d) >= light.position_range.w * light.position_range.w || dot(d, normal) <= 0.0) {
+        return vec3(0.0);
+    }
     vec3 to_light;
-    vec3 irradiance = light_irradiance_normal(lights[index], surface_position, to_light);
-    return irradiance == vec3(0.0) ? vec3(0.0) : irradiance * reflect_light(r, normal, to_eye, n_v, to_light);
+    vec3 irradiance = light_irradiance_normal(light, surface_position, to_light);
+    return irradiance * reflect_light(r, to_eye, to_light, max(dot(normal, to_light), 0.0));
 }
 
-vec3 local_lights(Reflection r, vec3 normal, vec3 to_eye, float n_v, vec2 uv, float depth_m) {
+// In index order in every variant, so that all give the same bits.
+vec3 local_lights(Reflection r, vec3 normal, vec3 to_eye, vec2 uv, float depth_m) {
     vec3 sum = vec3(0.0);
 #if LIGHTS == 2
     uint first = cluster_index(clusters, uv, depth_m) * clusters.block.w;
+#endif
+    if (unrolled_lights > 0u) {
+#if LIGHTS == 2
+        uint mask = masks[first];
+#else
+        uint mask = ~0u;
+#endif
+        [[unroll]] for (uint i = 0u; i < unrolled_lights; ++i) {
+            if ((mask & (1u << i)) != 0u) {
+                sum += local_light(lights[i], r, normal, to_eye);
+            }
+        }
+        return sum;
+    }
+#if LIGHTS == 2
     for (uint word = 0u; word < clusters.block.w; ++word) {
         for (uint mask = masks[first + word]; mask != 0u; mask &= mask - 1u) {
-            sum += local_light(32u * word + uint(findLSB(mask)), r, normal, to_eye, n_v);
+            sum += local_light(lights[32u * word + uint(findLSB(mask))], r, normal, to_eye);
         }
     }
 #else
     uint count = uint(frame.ambient_down.w);
     for (uint i = 0u; i < count; ++i) {
-        sum += local_light(i, r, normal, to_eye, n_v);
+        sum += local_light(lights[i], r, normal, to_eye);
     }
 #endif
     return sum;
 }
 #endif
+
+vec3 directional_light(Reflection r, vec3 normal, vec3 to_eye, vec3 travel, vec3 illuminance) {
+    float n_l = -dot(normal, travel);
+    return n_l > 0.0 ? illuminance * reflect_light(r, to_eye, -travel, n_l) : vec3(0.0);
+}
 
 vec3 lit_radiance(vec3 base, float depth_m) {
     float metallic = material.surface.x;
@@ -127,11 +159,11 @@ vec3 lit_radiance(vec3 base, float depth_m) {
         metallic *= texel.y;
     }
     roughness = clamp(roughness, 0.045, 1.0); // smoother is a spike that neither numbers nor pixels can hold
-    Reflection r = make_reflection(base, metallic, roughness);
     vec3 geometric = geometric_normal();
     vec3 normal = shading_normal(geometric);
-    vec3 to_eye = normalize(frame.to_eye.xyz - frame.to_eye.w * surface_position);
+    vec3 to_eye = unit(frame.to_eye.xyz - frame.to_eye.w * surface_position);
     float n_v = max(dot(normal, to_eye), 1e-3);
+    Reflection r = make_reflection(base, metallic, roughness, n_v);
 
     float occlusion = 1.0;
     if (has_texture(occlusion_slot)) {
@@ -139,15 +171,15 @@ vec3 lit_radiance(vec3 base, float depth_m) {
         occlusion += material.surface.w * (texel - 1.0);
     }
     vec2 environment = environment_reflection(roughness, n_v);
-    vec3 mirrored = r.f0 * environment.x + r.f90 * environment.y;
-    float beneath = 1.0 - (r.dielectric_f.x * environment.x + r.dielectric_f.y * environment.y);
-    vec3 radiance = occlusion * (r.diffuse * beneath * ambient_radiance(normal) +
+    vec3 mirrored = r.f0 * (environment.x + environment.y) + r.f_rise * environment.y;
+    float beneath = 1.0 + (r.transmitted.x - 1.0) * (environment.x + environment.y) + r.transmitted.y * environment.y;
+    vec3 radiance = occlusion * (r.diffuse * (pi * beneath) * ambient_radiance(normal) +
                                  mirrored * ambient_radiance(reflect(-to_eye, normal)));
 
-    vec3 to_sun = -frame.sun_direction.xyz;
-    vec3 sun_light = reflect_light(r, normal, to_eye, n_v, to_sun) * frame.sun_illuminance.rgb;
+    vec3 sun_travel = frame.sun_direction.xyz;
+    vec3 sun_light = directional_light(r, normal, to_eye, sun_travel, frame.sun_illuminance.rgb);
 #if SUN_SHADOW
-    if (dot(geometric, to_sun) > 0.0) {
+    if (sun_light != vec3(0.0) && dot(geometric, sun_travel) < 0.0) {
         radiance += sun_light * sun_visibility(surface_position, geometric, depth_m);
     }
 #else
@@ -155,10 +187,11 @@ vec3 lit_radiance(vec3 base, float depth_m) {
 #endif
     int fills = int(frame.ambient_up.w);
     for (int i = 0; i < fills; ++i) {
-        radiance += reflect_light(r, normal, to_eye, n_v, -frame.fill_direction[i].xyz) * frame.fill_illuminance[i].rgb;
+        radiance +=
+            directional_light(r, normal, to_eye, frame.fill_direction[i].xyz, frame.fill_illuminance[i].rgb);
     }
 #if LIGHTS
-    radiance += local_lights(r, normal, to_eye, n_v, gl_FragCoord.xy * frame.size.zw, depth_m);
+    radiance += local_lights(r, normal, to_eye, gl_FragCoord.xy * frame.size.zw, depth_m);
 #endif
     vec3 emission = material.emission_cutoff.rgb;
     if (has_texture(emission_slot)) {

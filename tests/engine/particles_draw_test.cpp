@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/particles.hpp"
+#include "features/volumetrics/parameters.hpp"
 #include "shaders/common/lights.h"
-#include "shaders/common/scattering_volume.h"
 #include "tests/engine/particles_fixture.hpp"
 
 namespace tyndall::test {
@@ -60,7 +60,8 @@ protected:
     }
 
 private:
-    void add_fog(rg::GraphBuilder& graph, const Fog& fog, engine::ParticleSurroundings& surroundings);
+    void add_fog(rg::GraphBuilder& graph, const Fog& fog, const engine::FrameView& view,
+                 engine::ParticleSurroundings& surroundings);
     void add_shadow(rg::GraphBuilder& graph, float depth, engine::ParticleSurroundings& surroundings);
     template <typename T>
     [[nodiscard]] rg::Buffer import(rg::GraphBuilder& graph, std::string_view name, std::span<const T> content) {
@@ -73,18 +74,12 @@ private:
     std::vector<rg::ImportBinding> imports_;
 };
 
-void ParticlesDrawTest::add_fog(rg::GraphBuilder& graph, const Fog& fog, engine::ParticleSurroundings& surroundings) {
-    const double range_m = 40.0;
-    const double shape_m = 10.0;
-    const double log_term = std::log1p(range_m / shape_m);
-    gpu::ScatteringVolume volume{};
-    constexpr double slope = 0.5; // that of Picture::view
-    volume.slope = glm::vec4(2.0 * slope, -2.0 * slope, -slope, slope);
-    const double y = -log_term / slices;
-    volume.grid = glm::vec4(2.0, 2.0, slices, -std::expm1(-y) / y);
-    volume.area = glm::vec4(1.0, 1.0, 0.0, 0.0);
-    volume.scale = glm::vec4(1.0, 1.0, std::exp(-y), std::exp(y));
-    volume.law.range_shape = glm::vec4(range_m, shape_m, log_term, 1.0 / log_term);
+void ParticlesDrawTest::add_fog(rg::GraphBuilder& graph, const Fog& fog, const engine::FrameView& view,
+                                engine::ParticleSurroundings& surroundings) {
+    const volumetrics::GridSettings grid{.width = 2, .height = 2, .slices = slices, .range_m = 40.0F, .shape_m = 10.0F};
+    const double log_term = std::log1p(static_cast<double>(grid.range_m) / static_cast<double>(grid.shape_m));
+    const gpu::ScatteringVolume volume =
+        volumetrics::scattering_volume(grid, {.clip_from_view = view.clip_from_view}, 1.0F);
     engine::ScatteringVolumeImages images{
         .accumulated = graph.create_image(
             "accumulated", {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {2, 2, 1}, .layers = slices + 1}),
@@ -98,7 +93,7 @@ void ParticlesDrawTest::add_fog(rg::GraphBuilder& graph, const Fog& fog, engine:
         .writes(images.in_scattered, rg::Access::transfer_destination)
         .executes([=](rg::PassContext& ctx) {
             for (std::uint32_t k = 0; k <= slices; ++k) {
-                const double z = shape_m * std::expm1(log_term * k / slices);
+                const double z = static_cast<double>(grid.shape_m) * std::expm1(log_term * k / slices);
                 const double tau = fog.extinction_per_m * z;
                 const auto radiance = static_cast<float>(fog.source * -std::expm1(-tau));
                 const VkClearColorValue value{.float32 = {radiance, radiance, radiance, static_cast<float>(tau)}};
@@ -158,7 +153,7 @@ std::vector<glm::vec4> ParticlesDrawTest::draw(const std::vector<ParticleEmitter
         .writes(color, rg::Access::color_attachment, {.clear = rg::clear_color(b.r, b.g, b.b, b.a)});
     engine::ParticleSurroundings surroundings{.scene_depth = depth};
     if (picture.fog) {
-        add_fog(graph, *picture.fog, surroundings);
+        add_fog(graph, *picture.fog, picture.view, surroundings);
     }
     if (picture.shadow_depth) {
         add_shadow(graph, *picture.shadow_depth, surroundings);
