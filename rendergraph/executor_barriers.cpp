@@ -56,6 +56,14 @@ void add_barrier(FrameWork& work, const Dependency& d, Source source, Destinatio
     if (object == nullptr) {
         return;
     }
+    if (d.hazard == Hazard::aliased_memory && source.access != 0) {
+        // A barrier of one resource makes available only what was written through that resource; other bytes lived here.
+        work.memory_barriers.push_back({.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                        .srcStageMask = source.stages,
+                                        .srcAccessMask = source.access,
+                                        .dstStageMask = destination.stages,
+                                        .dstAccessMask = destination.access});
+    }
     if (desc.kind == ResourceKind::buffer) {
         work.buffer_barriers.push_back({.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
                                         .srcStageMask = source.stages,
@@ -185,7 +193,7 @@ void ExecutorState::add_history_preparations(std::uint32_t real_queue) {
 }
 
 void ExecutorState::flush_barriers(VkCommandBuffer cmd) {
-    if (work.image_barriers.empty() && work.buffer_barriers.empty()) {
+    if (work.image_barriers.empty() && work.buffer_barriers.empty() && work.memory_barriers.empty()) {
         return;
     }
     const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
@@ -195,6 +203,7 @@ void ExecutorState::flush_barriers(VkCommandBuffer cmd) {
                                       .imageMemoryBarrierCount = static_cast<std::uint32_t>(work.image_barriers.size()),
                                       .pImageMemoryBarriers = work.image_barriers.data()};
     vk.CmdPipelineBarrier2(cmd, &dependency);
+    work.memory_barriers.clear();
     work.buffer_barriers.clear();
     work.image_barriers.clear();
 }

@@ -147,6 +147,7 @@ struct FrameWork {
     std::vector<VkSemaphoreSubmitInfo> signals;
     std::vector<VkCommandBufferSubmitInfo> command_buffers;
     std::vector<VkSubmitInfo2> submits;
+    std::vector<VkMemoryBarrier2> memory_barriers;
     std::vector<VkImageMemoryBarrier2> image_barriers;
     std::vector<VkBufferMemoryBarrier2> buffer_barriers;
     std::vector<std::uint64_t> values;       ///< by real queue, of its newest segment
