@@ -57,7 +57,8 @@ void add_barrier(FrameWork& work, const Dependency& d, Source source, Destinatio
         return;
     }
     if (d.hazard == Hazard::aliased_memory && source.access != 0) {
-        // A barrier of one resource makes available only what was written through that resource; other bytes lived here.
+        // A barrier of one resource makes available only what was written through that resource; other bytes lived
+        // here.
         work.memory_barriers.push_back({.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                         .srcStageMask = source.stages,
                                         .srcAccessMask = source.access,
