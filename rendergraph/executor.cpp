@@ -136,6 +136,7 @@ tl::expected<std::uint64_t, ExecuteError> ExecutorState::execute(VkCommandBuffer
     work.slot = static_cast<std::uint32_t>(frames % slots.size());
     work.by_host = host_cmd != VK_NULL_HANDLE;
     work.error.reset();
+    work.memory_barriers.clear();
     work.image_barriers.clear();
     work.buffer_barriers.clear();
     if (Result begun = begin_frame(); !begun) {

@@ -198,6 +198,8 @@ void ExecutorState::flush_barriers(VkCommandBuffer cmd) {
         return;
     }
     const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                      .memoryBarrierCount = static_cast<std::uint32_t>(work.memory_barriers.size()),
+                                      .pMemoryBarriers = work.memory_barriers.data(),
                                       .bufferMemoryBarrierCount =
                                           static_cast<std::uint32_t>(work.buffer_barriers.size()),
                                       .pBufferMemoryBarriers = work.buffer_barriers.data(),

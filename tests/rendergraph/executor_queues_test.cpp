@@ -1,5 +1,6 @@
 // The executor on several queue families and when calls fail, seen by a device that remembers every call.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <set>
 
@@ -142,6 +143,39 @@ TEST_F(Queues, AFrameBeginsAfterAllOfTheFrameBefore) {
         EXPECT_EQ(recorded.commands.memory_barriers[0][0].srcStageMask, everything);
         EXPECT_EQ(recorded.commands.memory_barriers[0][0].dstStageMask, everything);
     }
+}
+
+TEST_F(Queues, MemoryThatChangesHandsIsMadeAvailableByAMemoryBarrier) {
+    Executor executor = make({QueueKind::graphics});
+    GraphBuilder builder;
+    std::array<Buffer, 4> chain;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        chain[i] = builder.create_buffer("link " + std::to_string(i), {.size_bytes = 256});
+    }
+    Buffer out = builder.import_buffer("out", {.size_bytes = 256},
+                                       {.has_final = true, .final_stages = VK_PIPELINE_STAGE_2_HOST_BIT});
+    builder.add_pass("fill", PassKind::transfer).writes(chain[0], Access::transfer_destination);
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+        builder.add_pass("step " + std::to_string(i), PassKind::compute)
+            .reads(chain[i - 1], Access::storage_compute)
+            .writes(chain[i], Access::storage_compute);
+    }
+    builder.add_pass("copy", PassKind::transfer)
+        .reads(chain.back(), Access::transfer_source)
+        .writes(out, Access::transfer_destination);
+    const DeclaredGraph graph = builder.finish();
+    const Plan plan = compiled(graph.desc, one_queue());
+    submit(executor, graph, plan);
+    std::size_t shared_with_content = 0;
+    for (const Dependency& dependency : plan.dependencies) {
+        shared_with_content += dependency.hazard == Hazard::aliased_memory && dependency.src_access != 0 ? 1 : 0;
+    }
+    ASSERT_GT(shared_with_content, 0U);
+    std::size_t recorded = 0;
+    for (const auto& barriers : device_.submits.at(0).commands.memory_barriers) {
+        recorded += barriers.size();
+    }
+    EXPECT_EQ(recorded, shared_with_content + 1) << "one for each, and the one that opens the frame";
 }
 
 TEST_F(Queues, HostSemaphoresAreWaitedForAndSignalledWithTheFinalLayoutBefore) {
