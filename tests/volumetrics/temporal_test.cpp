@@ -108,8 +108,7 @@ TEST_F(Temporal, PoisonInHistoryIsGoneInTheNextFrame) {
             scene.inputs.cut = true;
             scene.poison = glm::vec4(1.0F, value, 1.0F, 5.0F);
             (void)render(scene);
-            scene.inputs.cut = false;
-            scene.poison.reset();
+            scene.inputs.cut = false; // the poison stays declared: another use of the image would make another image
             scene.inputs.camera.origin_m.x = moved_m; // sampled by filtering, and fetched
             const Result result = render(scene);
             for (const glm::vec4& v : result.in_scattered) {
