@@ -57,7 +57,7 @@ tl::expected<void, Error> Renderer::declare_shadows(rg::GraphBuilder& graph, rg:
         if (!image) {
             return tl::unexpected(image.error());
         }
-        cascade_cache_.emplace().image = std::move(*image);
+        cascade_cache_ = CascadeCache{.image = std::move(*image)};
     }
     frame_.cascades = fit_cascades(frame_.view, casters_, lights_.sun->direction, settings_.cascades);
     const std::uint32_t slot_index = frame_.view.frame_slot;
