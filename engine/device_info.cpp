@@ -18,6 +18,16 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
     });
 }
 
+/// "Mesa 22.3.6 (LLVM 15.0.6)" -> 22; 0 for other texts.
+int mesa_major_version(std::string_view driver_info) {
+    constexpr std::string_view start = "Mesa ";
+    int major = 0;
+    if (driver_info.starts_with(start)) {
+        std::from_chars(driver_info.data() + start.size(), driver_info.data() + driver_info.size(), major);
+    }
+    return major;
+}
+
 bool has_main_queue(const DeviceInfo& info) {
     constexpr VkQueueFlags both = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     return std::any_of(info.queues.begin(), info.queues.end(),
@@ -80,6 +90,7 @@ DeviceInfo describe(VkPhysicalDevice device, std::uint32_t index) {
     vkGetPhysicalDeviceProperties2(device, &more);
     info.driver = std::string(v12.driverName) + " " + v12.driverInfo;
     info.driver_id = v12.driverID;
+    info.mesa_major = mesa_major_version(v12.driverInfo);
     describe_abilities(device, info);
     return info;
 }

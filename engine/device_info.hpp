@@ -32,6 +32,7 @@ struct DeviceInfo {
     std::string name;
     std::string driver; ///< name and version in the driver's own words
     VkDriverId driver_id = {};
+    int mesa_major = 0; ///< of Mesa's drivers: the first number of their version, which driverVersion does not tell
     std::uint32_t api_version = 0;
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     std::vector<QueueFamilyInfo> queues;

@@ -1,6 +1,7 @@
 #include "engine/gltf_geometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -12,6 +13,22 @@ namespace {
 
 /// Positions beyond it cannot be told from infinity after a few products in 32 bits.
 constexpr float position_limit_m = 1e12F;
+
+/// False for NaN too.
+bool in_range(const glm::vec3& position) {
+    const glm::vec3 size = glm::abs(position);
+    return size.x <= position_limit_m && size.y <= position_limit_m && size.z <= position_limit_m;
+}
+
+template <typename Vector>
+bool all_finite(const Vector& vector) {
+    for (typename Vector::length_type i = 0; i < Vector::length(); ++i) {
+        if (!std::isfinite(vector[i])) {
+            return false;
+        }
+    }
+    return true;
+}
 
 template <typename Vector>
 std::vector<Vector> to_vectors(const FloatElements& elements) {
@@ -121,8 +138,7 @@ private:
             return error;
         }
         for (const glm::vec3& position : primitive_.positions) {
-            const glm::vec3 size = glm::abs(position);
-            if (!(size.x <= position_limit_m && size.y <= position_limit_m && size.z <= position_limit_m)) {
+            if (!in_range(position)) {
                 return Error{"has a position that is not finite or beyond 1e12 m"};
             }
         }
@@ -148,8 +164,7 @@ private:
         values.resize(primitive_.positions.size(), neutral);
         bool replaced = false;
         for (Vector& value : values) {
-            const Vector difference = value - value; // zero for finite numbers, NaN for the rest
-            if (difference != Vector(0.0F)) {
+            if (!all_finite(value)) {
                 value = neutral;
                 replaced = true;
             }
@@ -237,8 +252,11 @@ tl::expected<std::optional<Primitive>, Error> read_gltf_primitive(const GltfDocu
     const std::size_t material = source.material < 0 ? materials.size() - 1 : static_cast<std::size_t>(source.material);
     auto built = Builder(document, source, std::move(label), notes)
                      .build(static_cast<std::uint32_t>(material), materials[material]);
-    if (built && *built) {
-        (*built)->name = owner.name.empty() ? "mesh " + std::to_string(mesh) : owner.name;
+    if (!built) {
+        return built;
+    }
+    if (std::optional<Primitive>& found = *built) {
+        found->name = owner.name.empty() ? "mesh " + std::to_string(mesh) : owner.name;
     }
     return built;
 }

@@ -165,7 +165,8 @@ std::optional<Error> check(json& value, const std::string& path, int depth, bool
     }
     value.erase("extras");
     for (auto& [key, child] : value.items()) {
-        const std::string child_path = path + "/" + key;
+        std::string child_path = path;
+        child_path.append("/").append(key);
         const auto* known = std::find_if(key_kinds.begin(), key_kinds.end(),
                                          [&key = key](const KeyKind& entry) { return entry.key == key; });
         if (!in_extension && known != key_kinds.end() && !has_kind(child, known->kind)) {

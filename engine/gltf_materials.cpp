@@ -118,16 +118,17 @@ private:
     }
 
     std::optional<TextureUse> placed(const Reference& from,
-                                     const tl::expected<std::optional<std::uint32_t>, Error>& index) {
-        if (!index) {
-            fail("cannot be read: " + index.error().message);
+                                     const tl::expected<std::optional<std::uint32_t>, Error>& made) {
+        if (!made) {
+            fail("cannot be read: " + made.error().message);
             return std::nullopt;
         }
-        if (!*index) {
+        const std::optional<std::uint32_t>& texture_index = *made;
+        if (!texture_index) {
             return std::nullopt;
         }
         TextureUse use;
-        use.texture = **index;
+        use.texture = *texture_index;
         int uv_set = from.uv_set;
         if (from.transform != nullptr) {
             uv_set = integer_or(find_member(from.transform, "texCoord"), uv_set);

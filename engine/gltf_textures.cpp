@@ -1,6 +1,7 @@
 #include "engine/gltf_textures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -83,7 +84,7 @@ void to_roughness(Image& image, double glossiness) {
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         const double roughness = 255.0 - glossiness * image.rgba[i + 3];
         image.rgba[i] = image.rgba[i + 2] = image.rgba[i + 3] = 255;
-        image.rgba[i + 1] = static_cast<std::uint8_t>(roughness + 0.5);
+        image.rgba[i + 1] = static_cast<std::uint8_t>(std::lround(roughness));
     }
 }
 

@@ -72,8 +72,8 @@ void add_lantern(Scene& scene, std::size_t mesh, glm::vec3 pillar, float turn_ra
     scene.add_light({.name = "lantern_light",
                      .kind = LightKind::point,
                      .color = candle_color,
-                     .intensity = 600.0F,
-                     .range_m = 9.0F},
+                     .intensity = 1100.0F,
+                     .range_m = 6.0F},
                     pillar + away * lantern_reach_m + glm::vec3{0.0F, lantern_height_m, 0.0F});
 }
 
@@ -165,8 +165,8 @@ void add_lamps(Scene& scene, const Materials& materials) {
         scene.add_light({.name = "chandelier_light",
                          .kind = LightKind::point,
                          .color = candle_color,
-                         .intensity = 900.0F,
-                         .range_m = 12.0F},
+                         .intensity = 1200.0F,
+                         .range_m = 8.0F},
                         at + glm::vec3{0.0F, 0.3F, 0.0F});
     }
     const std::size_t brazier = add_brazier_mesh(scene, materials);
@@ -175,8 +175,8 @@ void add_lamps(Scene& scene, const Materials& materials) {
         scene.add_light({.name = "brazier_light",
                          .kind = LightKind::point,
                          .color = fire_color,
-                         .intensity = 900.0F,
-                         .range_m = 10.0F},
+                         .intensity = 1300.0F,
+                         .range_m = 7.0F},
                         position + glm::vec3{0.0F, brazier_bowl_m + 0.35F, 0.0F});
     }
 }

@@ -33,7 +33,7 @@ Json smoke_emitter(const std::string& name, glm::vec3 brazier) {
             {"turbulence_m_s", 0.16F},
             {"start_radius_m", 0.16F},
             {"end_radius_m", 0.95F},
-            {"opacity", 0.16F},
+            {"opacity", 0.22F},
             {"albedo", {0.72F, 0.70F, 0.68F}}};
 }
 

@@ -17,8 +17,8 @@ layout(set = 0, binding = 0) uniform Frame { FrameParameters frame; };
 #if LIGHTS
 #include "common/lights.glsl"
 layout(set = 0, binding = 4, std430) readonly restrict buffer Lights { GpuLight lights[]; };
-// 1 to 32: the number of lights, each of which has code of its own. A processor that runs shaders loads from a storage
-// buffer at a constant place once for eight pixels, and elsewhere pixel by pixel. 0: a loop.
+// 1 to 32: the number of lights, each of which has code of its own; 0: a loop. Unrolled code pays on a processor that
+// jumps over what none of its eight pixels needs: there a load from a constant place serves all eight at once.
 layout(constant_id = 1) const uint unrolled_lights = 0u;
 #endif
 #if LIGHTS == 2
@@ -101,9 +101,11 @@ vec3 ambient_radiance(vec3 direction) {
 
 #if LIGHTS
 vec3 local_light(GpuLight light, Reflection r, vec3 normal, vec3 to_eye) {
-    vec3 d = light.position_range.xyz - surface_position;
-    if (dot(d, d) >= light.position_range.w * light.position_range.w || dot(d, normal) <= 0.0) {
-        return vec3(0.0);
+    if (unrolled_lights > 0u) { // what is out of reach adds exactly 0 below as well
+        vec3 d = light.position_range.xyz - surface_position;
+        if (dot(d, d) >= light.position_range.w * light.position_range.w || dot(d, normal) <= 0.0) {
+            return vec3(0.0);
+        }
     }
     vec3 to_light;
     vec3 irradiance = light_irradiance_normal(light, surface_position, to_light);

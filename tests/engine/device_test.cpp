@@ -1,5 +1,6 @@
 // The device itself: what it is, what its validation sees, its clocks and its errors.
 #include <chrono>
+#include <string>
 
 #include <gmock/gmock.h>
 
@@ -26,6 +27,9 @@ TEST_F(DeviceTest, DescribesItself) {
         EXPECT_NE(queue.queue, VK_NULL_HANDLE);
     }
     EXPECT_EQ(device().is_lavapipe(), info.name.find("llvmpipe") != std::string::npos);
+    if (device().is_lavapipe()) {
+        EXPECT_NE(info.driver.find("Mesa " + std::to_string(info.mesa_major) + "."), std::string::npos);
+    }
     EXPECT_EQ(device().executor_info(true).timestamps_need_full_barrier, device().is_lavapipe());
 }
 

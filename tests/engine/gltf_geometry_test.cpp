@@ -1,6 +1,7 @@
 // Vertices and triangles: accessors in all their forms, primitive modes, normals and tangents that are made.
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -213,6 +214,17 @@ TEST(GltfGeometry, SparseAccessorsOverwriteTheirBase) {
         EXPECT_EQ(primitive.positions[1], glm::vec3(5, 0, 0)) << with_base;
         EXPECT_EQ(primitive.positions[2], glm::vec3(0, 7, 0)) << with_base;
     }
+}
+
+TEST(GltfGeometry, CoordinatesThatAreNotFiniteAreReplacedWithANote) {
+    GltfFile file;
+    file.add_triangle();
+    const std::vector<float> uv = {0.25F, 0.5F, std::nanf(""), 1, 1, std::numeric_limits<float>::infinity()};
+    file.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = file.add_accessor(uv, "VEC2", type_float);
+    const auto scene = file.load();
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->primitives[0].uv0, (std::vector<glm::vec2>{{0.25F, 0.5F}, {0, 0}, {0, 0}}));
+    EXPECT_TRUE(has_note(*scene, "Mesh 0 has texture coordinates that are not finite"));
 }
 
 TEST(GltfGeometry, BrokenNormalsAreReplacedWithANote) {

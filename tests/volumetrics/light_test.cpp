@@ -215,14 +215,14 @@ TEST_F(LocalLight, InFogIsSteadyAsItCrossesSlices) {
         scene.inputs.medium.homogeneous = {.extinction_per_m = 0.03F, .albedo = glm::vec3(1.0F)};
         scene.lights = {point_light({0.05F, 0.0F, -12.0F - 0.14F * static_cast<float>(step)}, 20.0F, 100.0F, 0.02F)};
         const Result result = render(scene);
-        double sum = 0.0;
+        float brightest = 0.0F; // next to the light, where a point sample is worst
         for (const glm::vec4& pixel : result.color) {
-            sum += static_cast<double>(pixel.r);
+            brightest = std::max(brightest, pixel.r);
         }
-        brightness.push_back(sum);
+        brightness.push_back(static_cast<double>(brightest));
     }
     for (std::size_t i = 1; i < brightness.size(); ++i) {
-        EXPECT_NEAR(brightness[i] / brightness[i - 1], 1.0, 0.05) << i;
+        EXPECT_NEAR(brightness[i] / brightness[i - 1], 1.0, 0.15) << i;
     }
 }
 
