@@ -122,9 +122,7 @@ private:
             before.layout = groups[g].layout;
             before.in_frame = true;
         }
-        if (!groups.empty()) {
-            leave(resource, cell, before);
-        }
+        leave(resource, cell, before);
     }
 
     /// All dependencies between `before` and `group`, one for each queue of the group.
@@ -300,7 +298,9 @@ private:
         const ResourceDesc& desc = graph_.resources[resource];
         Group after;
         std::uint32_t family = VK_QUEUE_FAMILY_IGNORED;
-        const Use& last = *before.uses.back();
+        // The host wants all of an import in its final layout, also the parts that no pass touched.
+        const bool untouched = before.uses.empty();
+        const Use& last = untouched ? uses_of(resource).back() : *before.uses.back();
         VkPipelineStageFlags2 stages = 0;
         VkAccessFlags2 access = 0;
         Hazard hazard = Hazard::import_exit;
@@ -310,7 +310,7 @@ private:
             stages = import.final_stages;
             access = import.final_access;
             family = import.final_family;
-        } else if (desc.has_history && desc.kind == ResourceKind::image) {
+        } else if (desc.has_history && desc.kind == ResourceKind::image && !untouched) {
             after.layout = out_.resting_layout[resource];
             hazard = Hazard::history_rest;
         } else {
@@ -321,7 +321,7 @@ private:
         const std::uint32_t own_family = topology_.queues[last.queue].family;
         const bool transfers =
             family != VK_QUEUE_FAMILY_IGNORED && family != own_family && !schedule_.concurrent[resource];
-        if (!transition && stages == 0 && !transfers) {
+        if (!transition && (untouched || (stages == 0 && !transfers))) {
             return;
         }
         CellDependency made{{}, exit_slot_, none, false, {}};
@@ -330,6 +330,9 @@ private:
         d.hazard = hazard;
         d.src_queue = d.dst_queue = last.queue;
         add_sources(d, before, last.queue);
+        if (untouched) { // chained to the host's semaphore, if a pass waits for one
+            d.src_stages = d.local_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        }
         d.src_queue = last.queue; // the others are ordered before the last use
         d.dst_stages = stages;
         d.dst_access = access;
