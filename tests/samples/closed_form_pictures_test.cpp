@@ -1,0 +1,298 @@
+// Pictures of scenes so simple that every pixel has a closed form, through the whole tool: glTF in, linear EXR out.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/image_io.hpp"
+#include "tests/engine/gltf_fixture.hpp"
+#include "tests/samples/tool_process.hpp"
+
+namespace tyndall::test {
+namespace {
+
+using engine::test::GltfFile;
+using engine::test::json;
+
+constexpr std::uint32_t width = 320;
+constexpr std::uint32_t height = 180;
+constexpr double vertical_fov_rad = 0.8;
+
+using Color = std::array<double, 3>;
+
+/// Direction of the ray through a pixel's centre, at view depth 1. The camera is at the origin and looks along -z.
+std::array<double, 3> ray(std::uint32_t x, std::uint32_t y) {
+    const double slope = std::tan(0.5 * vertical_fov_rad);
+    return {(2.0 * (x + 0.5) / width - 1.0) * slope * width / height, (1.0 - 2.0 * (y + 0.5) / height) * slope, -1.0};
+}
+
+double length(const std::array<double, 3>& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+class ClosedFormPictures : public ::testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fresh_folder();
+        file_.add("cameras", {{"type", "perspective"},
+                              {"perspective",
+                               {{"yfov", vertical_fov_rad}, {"aspectRatio", double{width} / height}, {"znear", 0.1}}}});
+        file_.add("nodes", {{"camera", 0}});
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    /// A rectangle across the view, `half` wide to both sides of x, facing the camera.
+    void add_rectangle(double x, double z, double half, json material) {
+        const auto at = [](double v) { return static_cast<float>(v); };
+        const std::vector<float> positions = {at(x - half), at(-half), at(z), at(x + half), at(-half), at(z),
+                                              at(x + half), at(half),  at(z), at(x - half), at(half),  at(z)};
+        const std::vector<float> normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+        const std::vector<std::uint16_t> indices = {0, 1, 2, 0, 2, 3};
+        file_.add_shown_mesh({{"attributes",
+                               {{"POSITION", file_.add_accessor(positions, "VEC3", engine::test::type_float)},
+                                {"NORMAL", file_.add_accessor(normals, "VEC3", engine::test::type_float)}}},
+                              {"indices", file_.add_accessor(indices, "SCALAR", engine::test::type_unsigned_short)},
+                              {"material", file_.add("materials", std::move(material))}});
+    }
+
+    void add_light(json light, json node) {
+        json& lights = file_.root["extensions"]["KHR_lights_punctual"]["lights"];
+        lights.push_back(std::move(light));
+        node["extensions"]["KHR_lights_punctual"]["light"] = lights.size() - 1;
+        file_.add("nodes", std::move(node));
+    }
+    /// One that lights nothing in view: without any the tool would add a sun.
+    void add_dark_light() { add_light({{"type", "point"}, {"range", 0.1}}, {{"translation", {0, 0, 50}}}); }
+
+    [[nodiscard]] engine::Pixels<float> render(const std::vector<std::string>& more) {
+        for (const char* name : {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_materials_specular"}) {
+            file_.root["extensionsUsed"].push_back(name);
+        }
+        write_text(folder_ / "scene.gltf", file_.text());
+        file_.root.erase("extensionsUsed");
+        std::vector<std::string> arguments = {"render",
+                                              (folder_ / "scene.gltf").string(),
+                                              "--size",
+                                              std::to_string(width) + "x" + std::to_string(height),
+                                              "--validate",
+                                              "--frames",
+                                              "2",
+                                              "--out",
+                                              (folder_ / "out.exr").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ToolRun run = run_tool(arguments);
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        const auto image = engine::read_exr(folder_ / "out.exr");
+        EXPECT_TRUE(image.has_value());
+        return image.value_or(engine::Pixels<float>{});
+    }
+
+    /// The largest error of a channel, relative to `expected(x, y)`.
+    template <typename Expected>
+    static double largest_error(const engine::Pixels<float>& image, Expected&& expected) {
+        EXPECT_EQ(image.values.size(), std::size_t{width} * height * image.channels);
+        double largest = 0.0;
+        for (std::uint32_t y = 0; y < image.height; ++y) {
+            for (std::uint32_t x = 0; x < image.width; ++x) {
+                const Color color = expected(x, y);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const double got = image.values[(std::size_t{y} * width + x) * image.channels + c];
+                    largest = std::max(largest, std::abs(got - color[c]) / color[c]);
+                }
+            }
+        }
+        return largest;
+    }
+
+    std::filesystem::path folder_;
+    GltfFile file_;
+};
+
+json unlit(const Color& color, double alpha, const char* mode) {
+    return {{"pbrMetallicRoughness", {{"baseColorFactor", {color[0], color[1], color[2], alpha}}}},
+            {"alphaMode", mode},
+            {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+}
+
+struct Pane {
+    double depth_m;
+    double alpha;
+    Color color;
+};
+
+/// Fog between the eye and each pane, each pane over what lies behind: exact for a homogeneous medium of extinction
+/// sigma that scatters `source` toward the eye.
+Color through_panes(const std::vector<Pane>& front_to_back, double stretch, double sigma, const Color& source) {
+    Color sum = {};
+    double passes = 1.0;
+    for (const Pane& pane : front_to_back) {
+        const double transmittance = std::exp(-sigma * pane.depth_m * stretch);
+        for (std::size_t c = 0; c < 3; ++c) {
+            sum[c] += passes * pane.alpha * (pane.color[c] * transmittance + source[c] * (1.0 - transmittance));
+        }
+        passes *= 1.0 - pane.alpha;
+    }
+    return sum;
+}
+
+// The engine sorts: whatever the order of submission, each pane lies over those behind it and has the fog of its depth.
+TEST_F(ClosedFormPictures, TransparentPanesInFogInAnyOrder) {
+    const double sigma = 0.06;
+    const double albedo = 0.9;
+    const Color ambient = {0.5, 0.6, 0.8};
+    const Color source = {albedo * ambient[0], albedo * ambient[1], albedo * ambient[2]};
+    std::vector<Pane> panes;
+    for (int i = 0; i < 8; ++i) {
+        const double t = i / 8.0;
+        panes.push_back({1.3 + 2.1 * i, 0.2 + 0.4 * t, {0.9 - 0.8 * t, 0.1 + 0.3 * t, 0.2 + 0.7 * t}});
+    }
+    panes.push_back({21.0, 1.0, {0.7, 0.6, 0.4}}); // the wall
+    write_text(folder_ / "fog.json", R"({"medium":{"homogeneous":{"extinction_per_m":0.06,"albedo":[0.9,0.9,0.9]}},
+        "ambient":{"radiance":[0.5,0.6,0.8]},"grid":{"width":160,"height":90,"slices":64,"range_m":40}})");
+    const auto expected = [&](std::uint32_t x, std::uint32_t y) {
+        return through_panes(panes, length(ray(x, y)), sigma, source);
+    };
+    const GltfFile empty = file_;
+    std::vector<engine::Pixels<float>> images;
+    for (const std::array<std::size_t, 9>& order :
+         {std::array<std::size_t, 9>{0, 1, 2, 3, 4, 5, 6, 7, 8}, std::array<std::size_t, 9>{8, 7, 6, 5, 4, 3, 2, 1, 0},
+          std::array<std::size_t, 9>{3, 8, 0, 6, 1, 7, 2, 5, 4}}) {
+        file_ = empty;
+        add_dark_light();
+        for (const std::size_t i : order) {
+            add_rectangle(0.0, -panes[i].depth_m, 40.0,
+                          unlit(panes[i].color, panes[i].alpha, panes[i].alpha < 1.0 ? "BLEND" : "OPAQUE"));
+        }
+        images.push_back(render({"--fp32", "--fog", (folder_ / "fog.json").string()}));
+    }
+    const double fp32 = largest_error(images[0], expected);
+    const double fp16 = largest_error(render({"--fog", (folder_ / "fog.json").string()}), expected);
+    std::printf("8 panes in fog, largest relative error: fp32 %.1e, fp16 %.1e\n", fp32, fp16);
+    EXPECT_LE(fp32, 2e-3);
+    EXPECT_LE(fp16, 1e-2);
+    EXPECT_EQ(images[1].values, images[0].values);
+    EXPECT_EQ(images[2].values, images[0].values);
+}
+
+/// A white Lambert wall without a layer above.
+json lambert(const Color& albedo) {
+    return {{"pbrMetallicRoughness",
+             {{"baseColorFactor", {albedo[0], albedo[1], albedo[2], 1.0}},
+              {"metallicFactor", 0.0},
+              {"roughnessFactor", 1.0}}},
+            {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0.0}}}}}};
+}
+
+/// Window and inverse square of KHR_lights_punctual.
+double attenuation(double distance_m, double range_m) {
+    const double x = distance_m / range_m;
+    return std::clamp(1.0 - x * x * x * x, 0.0, 1.0) / (distance_m * distance_m);
+}
+
+TEST_F(ClosedFormPictures, LambertWallUnderAPointLight) {
+    const Color albedo = {0.8, 0.5, 0.2};
+    const std::array<double, 3> light = {0.7, -0.4, -3.0};
+    add_rectangle(0.0, -5.0, 10.0, lambert(albedo));
+    add_light({{"type", "point"}, {"intensity", 20.0}, {"color", {1.0, 0.5, 0.25}}, {"range", 9.0}},
+              {{"translation", {light[0], light[1], light[2]}}});
+    const auto expected = [&](std::uint32_t x, std::uint32_t y) {
+        const std::array<double, 3> r = ray(x, y);
+        const std::array<double, 3> to = {light[0] - 5.0 * r[0], light[1] - 5.0 * r[1], light[2] + 5.0};
+        const double distance = length(to);
+        const double irradiance = 20.0 * attenuation(distance, 9.0) * to[2] / distance;
+        const double scale = irradiance / std::numbers::pi;
+        return Color{albedo[0] * scale, albedo[1] * scale * 0.5, albedo[2] * scale * 0.25};
+    };
+    EXPECT_LE(largest_error(render({"--fp32"}), expected), 1e-4);
+}
+
+TEST_F(ClosedFormPictures, LambertWallUnderASpotLight) {
+    const double inner = 0.3;
+    const double outer = 0.55;
+    add_rectangle(0.0, -5.0, 10.0, lambert({0.5, 0.5, 0.5}));
+    add_light({{"type", "spot"},
+               {"intensity", 30.0},
+               {"range", 20.0},
+               {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}},
+              {{"translation", {0.5, 0.0, -1.0}}}); // shines along -z
+    const engine::Pixels<float> image = render({"--fp32"});
+    double largest = 0.0;
+    std::size_t dark = 0;
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const std::array<double, 3> r = ray(x, y);
+            const std::array<double, 3> to = {0.5 - 5.0 * r[0], -5.0 * r[1], 4.0};
+            const double distance = length(to);
+            const double cosine = to[2] / distance;
+            const double cone = std::clamp((cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer)), 0.0, 1.0);
+            const double expected = 30.0 * attenuation(distance, 20.0) * cone * cone * cosine * 0.5 / std::numbers::pi;
+            const double got = image.values[(std::size_t{y} * width + x) * image.channels];
+            if (cone == 0.0) {
+                EXPECT_EQ(got, 0.0);
+                ++dark;
+            }
+            largest = std::max(largest, std::abs(got - expected));
+        }
+    }
+    EXPECT_GT(dark, 100U);
+    EXPECT_LE(largest, 1e-4 * 0.5 * 30.0 / 16.0 / std::numbers::pi);
+}
+
+// The tool's own ambient light is what a wall in shadow shows; the sun's share is what is left.
+TEST_F(ClosedFormPictures, LambertWallUnderTheSun) {
+    double lit = 0.0;
+    double ambient = 0.0;
+    for (const double tilt_rad : {0.0, 1.0}) {
+        for (const bool shadowed : {false, true}) {
+            SCOPED_TRACE(std::to_string(tilt_rad) + (shadowed ? " shadowed" : ""));
+            const GltfFile empty = file_;
+            add_rectangle(0.0, -5.0, 10.0, lambert({0.5, 0.5, 0.5}));
+            if (shadowed) { // behind the camera, between wall and sun
+                add_rectangle(0.0, 2.0, 40.0, lambert({0.5, 0.5, 0.5}));
+            }
+            add_light({{"type", "directional"}, {"intensity", 1000.0}},
+                      {{"rotation", {-std::sin(0.5 * tilt_rad), 0.0, 0.0, std::cos(0.5 * tilt_rad)}}});
+            const engine::Pixels<float> image = render({"--fp32"});
+            file_ = empty;
+            const double middle = image.values[(std::size_t{height} / 2 * width + width / 2) * image.channels];
+            (shadowed ? ambient : lit) = middle;
+        }
+        EXPECT_NEAR((lit - ambient) / (0.5 * 1000.0 * std::cos(tilt_rad) / std::numbers::pi), 1.0, 1e-4);
+    }
+}
+
+TEST_F(ClosedFormPictures, MaskCutsAtItsCutoffAndBackFacesAreCulled) {
+    add_dark_light();
+    add_rectangle(0.0, -8.0, 20.0, unlit({0.1, 0.2, 0.3}, 1.0, "OPAQUE"));
+    json below = unlit({0.9, 0.9, 0.9}, 0.59, "MASK");
+    below["alphaCutoff"] = 0.6;
+    json above = unlit({0.8, 0.7, 0.6}, 0.61, "MASK");
+    above["alphaCutoff"] = 0.6;
+    add_rectangle(-1.0, -5.0, 0.9, below);
+    add_rectangle(1.0, -5.0, 0.9, above);
+    json back = unlit({0.9, 0.1, 0.9}, 1.0, "OPAQUE");
+    add_rectangle(0.0, -3.0, 1.0, back); // turned away below: seen from behind it is not there
+    file_.root["nodes"].back()["rotation"] = {0.0, 1.0, 0.0, 0.0};
+    file_.root["nodes"].back()["translation"] = {0.0, 0.0, -6.0};
+    const auto red = [](const engine::Pixels<float>& image, double x) { // at depth 5
+        const double slope = std::tan(0.5 * vertical_fov_rad) * width / height;
+        const auto column = static_cast<std::size_t>((x / 5.0 / slope * 0.5 + 0.5) * width);
+        return image.values[(std::size_t{height} / 2 * width + column) * image.channels];
+    };
+    const engine::Pixels<float> single = render({"--fp32"});
+    EXPECT_FLOAT_EQ(red(single, -1.0), 0.1F);
+    EXPECT_FLOAT_EQ(red(single, 1.0), 0.8F);
+    file_.root["materials"].back()["doubleSided"] = true;
+    const engine::Pixels<float> both = render({"--fp32"});
+    EXPECT_FLOAT_EQ(red(both, -1.0), 0.9F);
+    EXPECT_FLOAT_EQ(both.values[(std::size_t{height} / 2 * width + width * 9 / 20) * both.channels + 1], 0.1F);
+}
+
+} // namespace
+} // namespace tyndall::test
