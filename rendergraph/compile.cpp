@@ -1,5 +1,7 @@
 #include "rendergraph/compile.hpp"
 
+#include "rendergraph/queue_model.hpp"
+#include "rendergraph/simulate.hpp"
 #include "rendergraph/stages.hpp"
 
 namespace tyndall::rg {
@@ -25,7 +27,8 @@ std::uint32_t dependency_behind(const Plan& plan, const std::vector<std::uint32_
 } // namespace
 
 tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopology& topology,
-                                        const MemoryRequirements& memory, const CompileOptions& options) {
+                                        const MemoryRequirements& memory, const CompileOptions& options,
+                                        const Costs& costs, const Plan* /*previous*/) {
     using namespace stages;
     Diagnostics errors = graph.declaration_errors;
     append(errors, validate(graph, topology));
@@ -95,6 +98,12 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     plan.statistics.transient_bytes_unaliased = placed.unaliased_bytes;
     plan.statistics.largest_live_set_bytes = placed.largest_live_set_bytes;
     plan.statistics.barrier_count = static_cast<std::uint32_t>(plan.dependencies.size());
+    for (const PlannedPass& pass : plan.passes) {
+        plan.decision.serial_ns += duration_within_limits(costs, pass.pass);
+        plan.decision.overlaps = plan.decision.overlaps || pass.queue != 0;
+    }
+    plan.decision.overlap_ns = simulate(graph, plan, costs).makespan_ns;
+    plan.decision.reason = plan.decision.overlaps ? DecisionReason::forced : DecisionReason::nothing_async_capable;
     return plan;
 }
 

@@ -113,10 +113,25 @@ struct AccessDesc {
     std::source_location where = {};
 };
 
+/// A part of the frame that is declared in alternative forms, of which the compiler keeps one by predicted time.
+struct VariantDesc {
+    std::string name = {};
+    std::vector<std::string> forms = {};
+    std::source_location where = {};
+};
+
+/// The bit of a kind of queue in PassDesc::forbidden_queues.
+[[nodiscard]] constexpr std::uint8_t queue_bit(QueueKind kind) {
+    return static_cast<std::uint8_t>(1U << static_cast<std::uint8_t>(kind));
+}
+
 struct PassDesc {
     std::string name = {};
     PassKind kind = PassKind::graphics;
     QueueWish wish = QueueWish::automatic;
+    std::uint8_t forbidden_queues = 0; ///< queue_bit of each kind where an automatic pass must not run
+    std::uint32_t variant = none;      ///< index into GraphDesc::variants
+    std::uint32_t form = 0;            ///< index into VariantDesc::forms
     bool has_side_effect = false;
     std::string side_effect = {}; ///< what it is, in words, for reports
     std::uint32_t first_access = 0;
@@ -130,7 +145,8 @@ struct GraphDesc {
     std::vector<PassDesc> passes;
     std::vector<AccessDesc> accesses; ///< grouped by pass, in order of declaration
     std::vector<ImportDesc> imports;
-    std::vector<std::string> points;     ///< injection points, in the host's order
+    std::vector<std::string> points; ///< injection points, in the host's order
+    std::vector<VariantDesc> variants = {};
     Diagnostics declaration_errors = {}; ///< what the builder already saw; compile reports them with its own
 };
 

@@ -53,6 +53,7 @@ enum class CullReason : std::uint8_t {
     consumer_culled,   ///< all that read it were culled themselves; `pass` names the first
     all_passes_culled, ///< a resource that only culled passes touch
     never_used,        ///< a resource that no pass touches
+    other_form,        ///< another form of its variant is kept; `because_of` names the variant
 };
 enum class QueueReason : std::uint8_t {
     only_queue_that_can,
@@ -61,6 +62,25 @@ enum class QueueReason : std::uint8_t {
     asked_for_but_no_such_queue,
     async_switched_off,
     import_not_shared, ///< it touches an import that other families use too, and that the host does not share
+    forbidden,         ///< the pass may not run on any other queue that could
+    overlap_pays,      ///< there it runs beside other work, and the frame is predicted to be shorter
+    earliest_here,     ///< the frame overlaps, but no other queue is predicted to finish this pass earlier
+};
+/// Why the frame overlaps, or does not, where nobody asked for a queue.
+enum class DecisionReason : std::uint8_t {
+    one_queue,               ///< the topology has no other queue
+    switched_off,            ///< CompileOptions::async
+    nothing_async_capable,   ///< no pass that is free to choose can run anywhere else
+    nothing_measured,        ///< no pass has a known duration: nothing to decide by
+    ceiling_below_threshold, ///< not even a perfect schedule would gain enough
+    gain_below_threshold,    ///< the best schedule found does not gain enough
+    overlap_pays,
+    forced, ///< passes were asked onto other queues, and moving more does not gain enough
+};
+enum class VariantReason : std::uint8_t {
+    shortest_frame,
+    kept_by_hysteresis, ///< the previous plan's form; no other gains more than the threshold
+    nothing_measured,   ///< no pass has a known duration: the first form
 };
 enum class Hazard : std::uint8_t {
     read_after_write,
@@ -132,7 +152,7 @@ struct PlannedPass {
 struct CulledPass {
     std::uint32_t pass = none;
     CullReason reason = CullReason::no_consumer;
-    std::uint32_t because_of = none; ///< resource (no_consumer) or pass (consumer_culled)
+    std::uint32_t because_of = none; ///< resource (no_consumer), pass (consumer_culled) or variant (other_form)
 };
 struct CulledResource {
     std::uint32_t resource = none;
@@ -183,6 +203,25 @@ struct Heap {
     VkDeviceSize size_bytes = 0;
 };
 
+/// Overlap or not, and what it was decided by. All times predicted by the model of simulate.hpp, in nanoseconds.
+struct AsyncDecision {
+    bool overlaps = false; ///< the plan uses more than one queue
+    DecisionReason reason = DecisionReason::one_queue;
+    std::int64_t serial_ns = 0;      ///< the frame on the graphics queue alone
+    std::int64_t overlap_ns = 0;     ///< the best frame found with several queues; serial_ns where none was looked for
+    std::int64_t lower_bound_ns = 0; ///< no schedule on these queues can be shorter
+    std::int64_t ceiling_ns = 0;     ///< serial_ns - lower_bound_ns: what overlap could gain at most
+    std::int64_t threshold_ns = 0;   ///< what it must gain
+    bool kept_by_hysteresis = false; ///< the previous plan's schedule; a better one does not gain enough over it
+    friend bool operator==(const AsyncDecision&, const AsyncDecision&) = default;
+};
+/// Which form of a variant was kept.
+struct VariantDecision {
+    std::uint32_t form = 0;
+    VariantReason reason = VariantReason::nothing_measured;
+    std::vector<std::int64_t> predicted_ns; ///< of the frame with each form
+};
+
 struct PlanStatistics {
     VkDeviceSize transient_bytes = 0;           ///< sum of heaps
     VkDeviceSize transient_bytes_unaliased = 0; ///< what it would be without sharing
@@ -204,6 +243,9 @@ struct Plan {
     std::uint32_t first_exit_barrier = 0; ///< into dependencies: after the last pass (import exits)
     std::uint32_t exit_barrier_count = 0;
     PlanStatistics statistics;
+    AsyncDecision decision;
+    std::vector<VariantDecision> variants; ///< by GraphDesc::variants
+    std::uint64_t passes_hash = 0; ///< of the names of the graph's passes: whether it fits a later frame's graph
 };
 
 } // namespace tyndall::rg

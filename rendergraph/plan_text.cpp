@@ -138,6 +138,8 @@ std::string why_culled(const GraphDesc& graph, const CulledPass& pass) {
     case CullReason::consumer_culled: return "its consumer " + pass_name(graph, pass.because_of) + " is left out";
     case CullReason::all_passes_culled: return "all passes that touch it are left out";
     case CullReason::never_used: return "no pass touches it";
+    case CullReason::other_form:
+        return "another form of " + quoted(graph.variants[pass.because_of].name) + " makes the frame shorter";
     }
     return "";
 }
@@ -151,6 +153,9 @@ std::string why_queue(const PlannedPass& pass) {
     case QueueReason::async_switched_off: return "asynchronous queues are switched off";
     case QueueReason::import_not_shared:
         return "another queue asked for, but the host does not share an import between families";
+    case QueueReason::forbidden: return "every other queue that could is forbidden";
+    case QueueReason::overlap_pays: return "beside other work there, the frame is shorter";
+    case QueueReason::earliest_here: return "no other queue finishes it earlier";
     }
     return "";
 }

@@ -1,0 +1,37 @@
+// How queues work through their passes: the model behind simulate and behind every decision of the scheduler. Internal.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "rendergraph/costs.hpp"
+
+namespace tyndall::rg::stages {
+
+/// The limits inside which sums and products of costs stay exact: a host's nonsense is cut off, never overflows.
+inline constexpr std::int64_t longest_ns = 10'000'000'000; ///< of one pass or wait
+inline constexpr std::int64_t permille = 1'000;
+inline constexpr std::int64_t largest_slowdown_permille = 10'000;
+
+[[nodiscard]] std::int64_t duration_within_limits(const Costs& costs, std::uint32_t pass);
+[[nodiscard]] std::int64_t cross_queue_within_limits(const Costs& costs);
+[[nodiscard]] std::int64_t slowdown_within_limits(const Costs& costs);
+
+/// Passes ("items") in submission order, each on a queue, with the items on other queues that it waits for.
+struct QueueProgram {
+    std::uint32_t queue_count = 1;
+    std::vector<std::uint32_t> queue;      ///< by item
+    std::vector<std::int64_t> duration_ns; ///< by item, alone on the device
+    std::vector<std::uint32_t> first_wait; ///< items + 1 entries into `producers`
+    std::vector<std::uint32_t> producers;  ///< items
+};
+struct QueueRun {
+    std::vector<std::int64_t> start_ns; ///< by item
+    std::vector<std::int64_t> end_ns;
+    std::int64_t makespan_ns = 0;
+};
+/// Event by event, in whole nanoseconds. Items behind a wait that nothing answers start and end at the makespan.
+/// O((items + waits) x queues).
+[[nodiscard]] QueueRun run_queues(const QueueProgram& program, const Costs& costs);
+
+} // namespace tyndall::rg::stages
