@@ -1,7 +1,6 @@
 #include "rendergraph/compile.hpp"
 
-#include "rendergraph/queue_model.hpp"
-#include "rendergraph/simulate.hpp"
+#include "rendergraph/assign.hpp"
 #include "rendergraph/stages.hpp"
 
 namespace tyndall::rg {
@@ -9,6 +8,43 @@ namespace {
 
 void append(Diagnostics& to, Diagnostics from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+/// The frame's length with all waits that the schedule turned out to need.
+std::int64_t makespan_ns(const stages::Schedule& schedule, const Costs& costs) {
+    stages::QueueProgram program;
+    program.queue_count = schedule.queue_count;
+    program.queue = schedule.queue;
+    program.first_wait.push_back(0);
+    std::size_t wait = 0;
+    for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
+        program.duration_ns.push_back(stages::duration_within_limits(costs, schedule.order[slot]));
+        for (; wait < schedule.waits.size() && schedule.waits[wait].slot == slot; ++wait) {
+            program.producers.push_back(schedule.waits[wait].producer);
+        }
+        program.first_wait.push_back(static_cast<std::uint32_t>(program.producers.size()));
+    }
+    return stages::run_queues(program, costs).makespan_ns;
+}
+
+/// Some waits only the schedule knows: a layout changed once for readers on several queues. Where they cost what the
+/// overlap gained, everything stays at home.
+stages::Schedule schedule_what_pays(const GraphDesc& graph, const QueueTopology& topology, const stages::Cells& cells,
+                                    const stages::Flow& flow, const stages::Work& work,
+                                    const stages::QueueChoices& choices, const Costs& costs, stages::Decided& decided) {
+    AsyncDecision& decision = decided.decision;
+    stages::Schedule scheduled = schedule(graph, topology, cells, flow, assignment_of(work, decided.schedule, choices));
+    if (decision.reason != DecisionReason::overlap_pays) {
+        return scheduled;
+    }
+    decision.overlap_ns = makespan_ns(scheduled, costs);
+    if (decided.home_ns - decision.overlap_ns >= decided.least_gain_ns) {
+        return scheduled;
+    }
+    decision.reason = choices.any_away ? DecisionReason::forced : DecisionReason::gain_below_threshold;
+    decision.overlaps = choices.any_away;
+    decision.kept_by_hysteresis = false;
+    return schedule(graph, topology, cells, flow, assignment_of(work, decided.home, choices));
 }
 
 /// A dependency that shows why `batch` waits for `producer_batch`, `none` if only the order of memory asks for it.
@@ -28,7 +64,7 @@ std::uint32_t dependency_behind(const Plan& plan, const std::vector<std::uint32_
 
 tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopology& topology,
                                         const MemoryRequirements& memory, const CompileOptions& options,
-                                        const Costs& costs, const Plan* /*previous*/) {
+                                        const Costs& costs, const Plan* previous) {
     using namespace stages;
     Diagnostics errors = graph.declaration_errors;
     append(errors, validate(graph, topology));
@@ -46,7 +82,13 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     const Kept kept = cull(graph, everything, order, options.culling);
     // What was ordered through a culled pass must be ordered directly.
     const Flow flow = kept.culled_passes.empty() ? everything : follow_versions(graph, cells, &kept.pass);
-    const Schedule sched = schedule(graph, topology, cells, flow, order, kept, options.async);
+    const QueueChoices choices = choose_queues(graph, topology, kept, options.async);
+    const Work work = collect_work(flow, order, kept, choices, topology, costs);
+    const std::uint64_t passes_hash = hash_of_passes(graph);
+    Decided decided =
+        decide(work, choices, options.async, costs,
+               previous != nullptr ? previous_schedule(work, topology, passes_hash, *previous) : ItemSchedule{});
+    const Schedule sched = schedule_what_pays(graph, topology, cells, flow, work, choices, costs, decided);
     const Memory placed = place(graph, topology, sched, memory, options.aliasing);
     const Batches batches = make_batches(graph, sched);
     const Synchronised sync = synchronise(graph, topology, cells, sched, placed, batches, options.full_barriers);
@@ -98,12 +140,8 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     plan.statistics.transient_bytes_unaliased = placed.unaliased_bytes;
     plan.statistics.largest_live_set_bytes = placed.largest_live_set_bytes;
     plan.statistics.barrier_count = static_cast<std::uint32_t>(plan.dependencies.size());
-    for (const PlannedPass& pass : plan.passes) {
-        plan.decision.serial_ns += duration_within_limits(costs, pass.pass);
-        plan.decision.overlaps = plan.decision.overlaps || pass.queue != 0;
-    }
-    plan.decision.overlap_ns = simulate(graph, plan, costs).makespan_ns;
-    plan.decision.reason = plan.decision.overlaps ? DecisionReason::forced : DecisionReason::nothing_async_capable;
+    plan.decision = decided.decision;
+    plan.passes_hash = passes_hash;
     return plan;
 }
 

@@ -238,6 +238,11 @@ PassBuilder& PassBuilder::on_queue(QueueWish wish) {
     return *this;
 }
 
+PassBuilder& PassBuilder::never_on(QueueKind kind) {
+    builder_->desc_.passes[pass_].forbidden_queues |= queue_bit(kind);
+    return *this;
+}
+
 DeclaredGraph GraphBuilder::finish() {
     // Accesses were appended in order of the calls; two pass builders in use at once interleave them.
     const auto by_pass = [](const AccessDesc& a, const AccessDesc& b) { return a.pass < b.pass; };

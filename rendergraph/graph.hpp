@@ -90,6 +90,8 @@ public:
     /// The pass does something that the graph cannot see, so it is never culled.
     PassBuilder& has_side_effect(std::string_view what);
     PassBuilder& on_queue(QueueWish wish);
+    /// Where the scheduler must not put it while its queue is automatic.
+    PassBuilder& never_on(QueueKind kind);
 
     /// `callback(PassContext&)` records the pass. It runs after the builder is gone: capture by value, and only handles
     /// and plain data. Capture handles in the same expression, after the accesses that version them.

@@ -1,6 +1,6 @@
-// Queues, and the waits between them.
-// In: kept passes in topological order. Out: a queue for each, a partial order (vector clocks) with the fewest waits.
-// Invariant: every edge of the data flow is in the partial order. O((passes + edges) x queues).
+// The waits between queues.
+// In: kept passes in topological order, each with its queue. Out: a partial order (vector clocks) with the fewest
+// waits. Invariant: every edge of the data flow is in the partial order. O((passes + edges) x queues).
 //
 // Where readers on several queues need one thing done once (a layout transition, or a host semaphore waited for) and no
 // writer before them can do it, the first reader does, so the others are ordered after it.
@@ -11,98 +11,62 @@
 namespace tyndall::rg::stages {
 namespace {
 
-struct QueueChoice {
-    std::uint32_t queue = 0;
-    QueueReason reason = QueueReason::default_graphics;
-};
-
-bool same_queues(const std::vector<QueueChoice>& a, const std::vector<QueueChoice>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const QueueChoice& x, const QueueChoice& y) { return x.queue == y.queue; });
-}
-
-QueueChoice choose_queue(const PassDesc& pass, const QueueTopology& topology, bool async) {
-    if (pass.kind == PassKind::graphics) {
-        return {0, QueueReason::only_queue_that_can};
-    }
-    const bool asks = pass.wish == QueueWish::async_compute || pass.wish == QueueWish::transfer;
-    if (!asks) {
-        return {0, pass.wish == QueueWish::graphics ? QueueReason::asked_for : QueueReason::default_graphics};
-    }
-    if (!async) {
-        return {0, QueueReason::async_switched_off};
-    }
-    const QueueKind wanted = pass.wish == QueueWish::transfer ? QueueKind::transfer : QueueKind::compute;
-    for (std::uint32_t q = 0; q < topology.queues.size(); ++q) {
-        if (topology.queues[q].kind == wanted) {
-            return {q, QueueReason::asked_for};
-        }
-    }
-    return {0, QueueReason::asked_for_but_no_such_queue};
-}
-
-/// An import is EXCLUSIVE unless the host says that it shares it. Its passes then stay in one family: those that asked
-/// for another queue go back to graphics if the import is used elsewhere too.
-void keep_unshared_imports_together(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,
-                                    std::vector<QueueChoice>& choices) {
-    const auto family = [&](std::uint32_t pass) { return topology.queues[choices[pass].queue].family; };
-    std::vector<std::uint32_t> family_of(graph.resources.size(), none);
-    std::vector<bool> torn(graph.resources.size(), false);
-    for (const AccessDesc& access : graph.accesses) {
-        const ResourceDesc& resource = graph.resources[access.resource];
-        if (kept.pass[access.pass] && resource.import != none && !resource.concurrent) {
-            std::uint32_t& known = family_of[access.resource];
-            torn[access.resource] = torn[access.resource] || (known != none && known != family(access.pass));
-            known = family(access.pass);
-        }
-    }
-    for (const AccessDesc& access : graph.accesses) {
-        if (torn[access.resource] && choices[access.pass].queue != 0) {
-            choices[access.pass] = {0, QueueReason::import_not_shared};
-        }
-    }
-}
-
-/// Merges accesses of one pass to the same cells of one resource into one use.
+/// Merges accesses of one pass to the same cells of one resource into one use, grouped by resource.
 void collect_uses(const GraphDesc& graph, const Cells& cells, Schedule& schedule) {
-    std::vector<std::vector<Use>> by_resource(graph.resources.size());
+    const auto resources = static_cast<std::uint32_t>(graph.resources.size());
+    std::vector<std::uint32_t> first(resources + 1, 0);
+    for (const AccessDesc& access : graph.accesses) {
+        first[access.resource + 1] += schedule.slot_of[access.pass] != none ? 1 : 0;
+    }
+    for (std::uint32_t resource = 0; resource < resources; ++resource) {
+        first[resource + 1] += first[resource];
+    }
+    schedule.uses.resize(first[resources]);
+    std::vector<std::uint32_t> end(first.begin(), first.end() - 1);
+    const auto same_cells = [](const CellRange& a, const CellRange& b) {
+        return a.first_mip == b.first_mip && a.mip_count == b.mip_count && a.first_layer == b.first_layer &&
+               a.layer_count == b.layer_count;
+    };
     for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
         const PassDesc& pass = graph.passes[schedule.order[slot]];
         for (std::uint32_t i = pass.first_access; i < pass.first_access + pass.access_count; ++i) {
             const AccessDesc& access = graph.accesses[i];
             const ResourceDesc& resource = graph.resources[access.resource];
             const VkFormat format = resource.kind == ResourceKind::image ? resource.image.format : VK_FORMAT_UNDEFINED;
-            Use use{slot,
-                    schedule.order[slot],
-                    access.resource,
-                    schedule.queue[slot],
-                    cells.of_access[i],
-                    access_scope(access.access, access.direction, format),
-                    is_read(access.direction),
-                    is_write(access.direction)};
-            std::vector<Use>& uses = by_resource[access.resource];
-            const auto same = [&](const Use& other) {
-                return other.slot == slot && other.cells.first_mip == use.cells.first_mip &&
-                       other.cells.mip_count == use.cells.mip_count &&
-                       other.cells.first_layer == use.cells.first_layer &&
-                       other.cells.layer_count == use.cells.layer_count;
-            };
-            const auto found = std::find_if(uses.begin(), uses.end(), same);
-            if (found == uses.end()) {
-                uses.push_back(use);
+            const AccessScope scope = access_scope(access.access, access.direction, format);
+            const auto begin = schedule.uses.begin() + first[access.resource];
+            auto use = schedule.uses.begin() + end[access.resource];
+            while (use != begin && (use - 1)->slot == slot && !same_cells((use - 1)->cells, cells.of_access[i])) {
+                --use;
+            }
+            if (use != begin && (use - 1)->slot == slot) {
+                Use& merged = *(use - 1);
+                merged.scope.stages |= scope.stages;
+                merged.scope.access |= scope.access;
+                merged.reads = merged.reads || is_read(access.direction);
+                merged.writes = merged.writes || is_write(access.direction);
             } else {
-                found->scope.stages |= use.scope.stages;
-                found->scope.access |= use.scope.access;
-                found->reads = found->reads || use.reads;
-                found->writes = found->writes || use.writes;
+                schedule.uses[end[access.resource]++] = {slot,
+                                                         schedule.order[slot],
+                                                         access.resource,
+                                                         schedule.queue[slot],
+                                                         cells.of_access[i],
+                                                         scope,
+                                                         is_read(access.direction),
+                                                         is_write(access.direction)};
             }
         }
     }
+    // Merging left holes.
     schedule.first_use.assign(1, 0);
-    for (const std::vector<Use>& uses : by_resource) {
-        schedule.uses.insert(schedule.uses.end(), uses.begin(), uses.end());
-        schedule.first_use.push_back(static_cast<std::uint32_t>(schedule.uses.size()));
+    auto to = schedule.uses.begin();
+    for (std::uint32_t resource = 0; resource < resources; ++resource) {
+        const auto from = schedule.uses.begin() + first[resource];
+        const auto last = schedule.uses.begin() + end[resource];
+        to = from == to ? last : std::copy(from, last, to);
+        schedule.first_use.push_back(static_cast<std::uint32_t>(to - schedule.uses.begin()));
     }
+    schedule.uses.erase(to, schedule.uses.end());
 }
 
 struct SlotEdge {
@@ -139,12 +103,13 @@ private:
             return;
         }
         const ResourceCells& of = cells_.of_resource[resource];
-        std::vector<std::vector<const Use*>> cell_uses(of.count());
+        cell_uses_.resize(std::max<std::size_t>(cell_uses_.size(), of.count()));
         for (const Use& use : uses) {
-            for_each_cell(of, use.cells, [&](std::uint32_t cell) { cell_uses[cell].push_back(&use); });
+            for_each_cell(of, use.cells, [&](std::uint32_t cell) { cell_uses_[cell].push_back(&use); });
         }
-        for (const std::vector<const Use*>& of_cell : cell_uses) {
-            visit_cell(resource, of_cell, several_families);
+        for (std::uint32_t cell = 0; cell < of.count(); ++cell) {
+            visit_cell(resource, cell_uses_[cell], several_families);
+            cell_uses_[cell].clear();
         }
     }
 
@@ -205,18 +170,36 @@ private:
     const Cells& cells_;
     Schedule& schedule_;
     std::vector<SlotEdge>& edges_;
+    std::vector<std::vector<const Use*>> cell_uses_; ///< by cell; empty between resources
 };
 
+/// Edges grouped by the slot that they lead to; `first` has slots + 1 entries. O(edges + slots).
+std::vector<std::uint32_t> group_by_target(const std::vector<SlotEdge>& edges, std::size_t slots,
+                                           std::vector<std::uint32_t>& first) {
+    first.assign(slots + 1, 0);
+    for (const SlotEdge& edge : edges) {
+        ++first[edge.to + 1];
+    }
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+        first[slot + 1] += first[slot];
+    }
+    std::vector<std::uint32_t> from(edges.size());
+    std::vector<std::uint32_t> fill(first.begin(), first.end() - 1);
+    for (const SlotEdge& edge : edges) {
+        from[fill[edge.to]++] = edge.from;
+    }
+    return from;
+}
+
 /// Vector clocks in schedule order; a wait is dropped when another wait, or an earlier one of the queue, implies it.
-void derive_waits(std::vector<SlotEdge>& edges, Schedule& schedule) {
-    std::sort(edges.begin(), edges.end(),
-              [](const SlotEdge& a, const SlotEdge& b) { return a.to != b.to ? a.to < b.to : a.from < b.from; });
+void derive_waits(const std::vector<SlotEdge>& edges, Schedule& schedule) {
+    std::vector<std::uint32_t> first_edge;
+    const std::vector<std::uint32_t> from_slot = group_by_target(edges, schedule.order.size(), first_edge);
     const std::uint32_t queues = schedule.queue_count;
     const auto count = static_cast<std::uint32_t>(schedule.order.size());
     schedule.clocks.assign(std::size_t{count} * queues, 0);
     std::vector<std::uint32_t> last_on_queue(queues, none);
     std::vector<std::uint32_t> latest(queues);
-    std::size_t edge = 0;
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         const std::uint32_t own = schedule.queue[slot];
         std::uint32_t* clock = schedule.clocks.data() + std::size_t{slot} * queues;
@@ -225,8 +208,8 @@ void derive_waits(std::vector<SlotEdge>& edges, Schedule& schedule) {
         }
         // The latest producer of each other queue that is not already in the past.
         latest.assign(queues, none);
-        for (; edge < edges.size() && edges[edge].to == slot; ++edge) {
-            const std::uint32_t from = edges[edge].from;
+        for (std::uint32_t edge = first_edge[slot]; edge < first_edge[slot + 1]; ++edge) {
+            const std::uint32_t from = from_slot[edge];
             const std::uint32_t q = schedule.queue[from];
             if (q != own && clock[q] <= schedule.position[from] &&
                 (latest[q] == none || schedule.position[latest[q]] < schedule.position[from])) {
@@ -258,31 +241,18 @@ void derive_waits(std::vector<SlotEdge>& edges, Schedule& schedule) {
 } // namespace
 
 Schedule schedule(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells, const Flow& flow,
-                  const Order& order, const Kept& kept, bool async) {
+                  const Assignment& assignment) {
     Schedule schedule;
     schedule.queue_count = static_cast<std::uint32_t>(topology.queues.size());
+    schedule.order = assignment.order;
+    schedule.queue = assignment.queue;
+    schedule.queue_reason = assignment.reason;
     schedule.slot_of.assign(graph.passes.size(), none);
-    std::vector<QueueChoice> choices;
-    for (const PassDesc& pass : graph.passes) {
-        choices.push_back(choose_queue(pass, topology, async));
-    }
-    // Moving a pass may tear another import that it shares with a pass still elsewhere: again, until nothing moves.
-    // Each round moves at least one pass to graphics, so it ends.
-    for (std::vector<QueueChoice> before; before.size() != choices.size() || !same_queues(before, choices);) {
-        before = choices;
-        keep_unshared_imports_together(graph, topology, kept, choices);
-    }
+    schedule.position.reserve(schedule.order.size());
     std::vector<std::uint32_t> next_position(topology.queues.size(), 0);
-    for (const std::uint32_t pass : order.passes) {
-        if (!kept.pass[pass]) {
-            continue;
-        }
-        const QueueChoice choice = choices[pass];
-        schedule.slot_of[pass] = static_cast<std::uint32_t>(schedule.order.size());
-        schedule.order.push_back(pass);
-        schedule.queue.push_back(choice.queue);
-        schedule.queue_reason.push_back(choice.reason);
-        schedule.position.push_back(next_position[choice.queue]++);
+    for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
+        schedule.slot_of[schedule.order[slot]] = slot;
+        schedule.position.push_back(next_position[schedule.queue[slot]]++);
     }
     collect_uses(graph, cells, schedule);
 

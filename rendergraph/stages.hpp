@@ -103,6 +103,12 @@ struct Use {
     bool reads = false;
     bool writes = false;
 };
+/// Which queue each kept pass runs on, in which order, and why: what assign.hpp decides.
+struct Assignment {
+    std::vector<std::uint32_t> order; ///< kept passes in submission order, which respects the data flow
+    std::vector<std::uint32_t> queue; ///< parallel to order
+    std::vector<QueueReason> reason;  ///< parallel to order
+};
 struct QueueWait {
     std::uint32_t slot = 0;     ///< the waiting pass
     std::uint32_t producer = 0; ///< slot waited for
@@ -124,9 +130,10 @@ struct Schedule {
         return slot_a != slot_b && clocks[slot_b * queue_count + queue[slot_a]] > position[slot_a];
     }
 };
-/// Assigns queues and derives the waits between them with vector clocks. O((passes + edges) x queues).
+/// Derives what the assignment implies: uses, sharing, and the waits between queues, with vector clocks.
+/// O((passes + edges) x queues).
 [[nodiscard]] Schedule schedule(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells,
-                                const Flow& flow, const Order& order, const Kept& kept, bool async);
+                                const Flow& flow, const Assignment& assignment);
 
 // ---- memory ------------------------------------------------------------------------------------------------------
 

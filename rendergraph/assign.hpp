@@ -1,0 +1,88 @@
+// Which queue each pass runs on, and in what order: from what is possible, through what is predicted, to what is worth
+// it. Each step a pure function. Internal.
+#pragma once
+
+#include "rendergraph/queue_model.hpp"
+#include "rendergraph/stages.hpp"
+
+namespace tyndall::rg::stages {
+
+// ---- what is possible --------------------------------------------------------------------------------------------
+
+/// Bits of logical queues; the first 32 queues of a topology are enough for anybody.
+using QueueMask = std::uint32_t;
+inline constexpr std::uint32_t most_queues = 32;
+
+/// By pass: the queues that it may run on. A pass with one queue only is not free.
+struct QueueChoices {
+    std::vector<QueueMask> allowed;
+    std::vector<std::uint32_t> home; ///< the queue without any scheduling: the one asked for, or graphics
+    std::vector<QueueReason> reason; ///< why home
+    bool any_free = false;           ///< some kept pass has more than one queue
+    bool any_away = false;           ///< the home of some kept pass is not the graphics queue
+};
+/// O(accesses).
+[[nodiscard]] QueueChoices choose_queues(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,
+                                         bool async);
+
+// ---- what is predicted -------------------------------------------------------------------------------------------
+
+/// The kept passes as items, numbered in a topological order, with everything that the queue model needs.
+struct Work {
+    std::uint32_t queue_count = 1;
+    std::vector<std::uint32_t> pass;     ///< by item
+    std::vector<std::uint32_t> item_of;  ///< by pass, `none` if it is left out
+    std::vector<std::uint32_t> first_in; ///< items + 1 entries into `in`
+    std::vector<std::uint32_t> in;       ///< items that come before
+    std::vector<QueueMask> allowed;      ///< by item
+    std::vector<std::uint32_t> home;     ///< by item
+    std::vector<std::int64_t> duration_ns;
+};
+/// O(passes + edges).
+[[nodiscard]] Work collect_work(const Flow& flow, const Order& order, const Kept& kept, const QueueChoices& choices,
+                                const QueueTopology& topology, const Costs& costs);
+
+/// Items in submission order, which respects all edges, and the queue of each. Only the order on each queue means
+/// anything; `merged` gives all schedules with the same queues the same form.
+struct ItemSchedule {
+    std::vector<std::uint32_t> items;
+    std::vector<std::uint32_t> queue; ///< parallel to items
+    friend bool operator==(const ItemSchedule&, const ItemSchedule&) = default;
+};
+/// Everything at home, in the order of the items.
+[[nodiscard]] ItemSchedule at_home(const Work& work);
+/// The queues' orders merged into one, the lowest item first that may come. O(items x queues + edges).
+[[nodiscard]] ItemSchedule merged(const Work& work, const ItemSchedule& schedule);
+/// The frame's length in the queue model. O((items + edges) x queues).
+[[nodiscard]] std::int64_t makespan_ns(const Work& work, const ItemSchedule& schedule, const Costs& costs);
+
+/// By item: the longest way from its start to the frame's end, with the mean cost of crossing queues on each edge.
+[[nodiscard]] std::vector<std::int64_t> upward_ranks(const Work& work, const Costs& costs);
+/// No schedule of these items on these queues is shorter. O(items + edges + items x queues).
+[[nodiscard]] std::int64_t lower_bound_ns(const Work& work, const Costs& costs);
+/// List scheduling by upward rank with insertion (HEFT; Topcuoglu, Hariri, Wu 2002). O(items log items + edges).
+[[nodiscard]] ItemSchedule list_schedule(const Work& work, const std::vector<std::int64_t>& ranks, const Costs& costs);
+
+// ---- what is worth it --------------------------------------------------------------------------------------------
+
+/// The schedule of `previous` for this frame's items; empty where its passes, queues or order no longer fit.
+[[nodiscard]] ItemSchedule previous_schedule(const Work& work, const QueueTopology& topology, std::uint64_t passes_hash,
+                                             const Plan& previous);
+/// Hash of all pass names, in order.
+[[nodiscard]] std::uint64_t hash_of_passes(const GraphDesc& graph);
+
+struct Decided {
+    ItemSchedule schedule;
+    ItemSchedule home;              ///< what to fall back to
+    std::int64_t home_ns = 0;       ///< its length
+    std::int64_t least_gain_ns = 0; ///< of `schedule` over `home`, below which it does not pay
+    AsyncDecision decision;
+};
+/// Compares home, list schedule and the previous schedule (or none) in the queue model, and takes what pays.
+[[nodiscard]] Decided decide(const Work& work, const QueueChoices& choices, bool async, const Costs& costs,
+                             const ItemSchedule& previous);
+
+/// Passes in submission order with queue and reason: what the rest of compile works from.
+[[nodiscard]] Assignment assignment_of(const Work& work, const ItemSchedule& schedule, const QueueChoices& choices);
+
+} // namespace tyndall::rg::stages

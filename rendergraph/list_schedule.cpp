@@ -1,0 +1,122 @@
+// List scheduling by upward rank with insertion.
+// In: items, ranks. Out: queue and order of each. Invariant: an item starts after all items before it, with the latency
+// of crossing queues. Each item, the most urgent first, takes the queue on which it ends first, in a gap if one is long
+// enough; equal ends go to its home, then to the first queue. Source: HEFT (Topcuoglu, Hariri, Wu:
+// Performance-effective and low-complexity task scheduling for heterogeneous computing, 2002). Only the last few gaps
+// of a queue are looked at, as earlier ones lie before anything that is still ready: O(items log items + edges).
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "rendergraph/assign.hpp"
+
+namespace tyndall::rg::stages {
+namespace {
+
+constexpr std::size_t remembered_gaps = 8;
+
+struct Gap {
+    std::int64_t from = 0;
+    std::int64_t to = 0;
+};
+
+class Lane {
+public:
+    struct Place {
+        std::int64_t start = 0;
+        std::size_t gap = remembered_gaps; ///< remembered_gaps: behind everything
+    };
+    [[nodiscard]] Place find(std::int64_t ready, std::int64_t duration) const {
+        Place best{std::max(ready, end_)};
+        for (std::size_t i = 0; i < count_; ++i) {
+            const std::int64_t start = std::max(ready, gaps_[i].from);
+            if (start + duration <= gaps_[i].to && start < best.start) {
+                best = {start, i};
+            }
+        }
+        return best;
+    }
+    void take(const Place& place, std::int64_t duration) {
+        const std::int64_t end = place.start + duration;
+        if (place.gap == remembered_gaps) {
+            remember({end_, place.start});
+            end_ = end;
+            return;
+        }
+        const Gap gap = gaps_[place.gap];
+        gaps_[place.gap] = {gap.from, place.start};
+        remember({end, gap.to});
+    }
+
+private:
+    /// Keeps the latest gaps; empty ones give way first.
+    void remember(const Gap& gap) {
+        if (gap.from >= gap.to) {
+            return;
+        }
+        if (count_ < remembered_gaps) {
+            gaps_[count_++] = gap;
+            return;
+        }
+        const auto earliest = std::min_element(gaps_.begin(), gaps_.end(), [](const Gap& a, const Gap& b) {
+            const bool a_empty = a.from >= a.to;
+            const bool b_empty = b.from >= b.to;
+            return a_empty != b_empty ? a_empty : a.to < b.to;
+        });
+        if (earliest->from >= earliest->to || earliest->to < gap.to) {
+            *earliest = gap;
+        }
+    }
+
+    std::array<Gap, remembered_gaps> gaps_ = {};
+    std::size_t count_ = 0;
+    std::int64_t end_ = 0;
+};
+
+} // namespace
+
+ItemSchedule list_schedule(const Work& work, const std::vector<std::int64_t>& ranks, const Costs& costs) {
+    const std::int64_t cross_ns = cross_queue_within_limits(costs);
+    const auto count = static_cast<std::uint32_t>(work.pass.size());
+    std::vector<std::uint32_t> by_urgency(count);
+    std::iota(by_urgency.begin(), by_urgency.end(), 0U);
+    std::sort(by_urgency.begin(), by_urgency.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return ranks[a] != ranks[b] ? ranks[a] > ranks[b] : a < b; });
+    std::vector<Lane> lanes(work.queue_count);
+    std::vector<std::int64_t> start(count);
+    std::vector<std::uint32_t> queue(count);
+    for (const std::uint32_t item : by_urgency) {
+        std::uint32_t best_queue = none;
+        Lane::Place best;
+        for (std::uint32_t q = 0; q < std::min(work.queue_count, most_queues); ++q) {
+            if ((work.allowed[item] >> q & 1U) == 0) {
+                continue;
+            }
+            std::int64_t ready = 0;
+            for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
+                const std::uint32_t from = work.in[edge];
+                ready = std::max(ready, start[from] + work.duration_ns[from] + (queue[from] != q ? cross_ns : 0));
+            }
+            const Lane::Place place = lanes[q].find(ready, work.duration_ns[item]);
+            if (best_queue == none || place.start < best.start || (place.start == best.start && q == work.home[item])) {
+                best_queue = q;
+                best = place;
+            }
+        }
+        lanes[best_queue].take(best, work.duration_ns[item]);
+        start[item] = best.start;
+        queue[item] = best_queue;
+    }
+    // Starts of one queue differ, as no duration is zero.
+    ItemSchedule schedule;
+    schedule.items.resize(count);
+    std::iota(schedule.items.begin(), schedule.items.end(), 0U);
+    std::sort(schedule.items.begin(), schedule.items.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return start[a] != start[b] ? start[a] < start[b] : a < b; });
+    schedule.queue.resize(count);
+    std::transform(schedule.items.begin(), schedule.items.end(), schedule.queue.begin(),
+                   [&](std::uint32_t item) { return queue[item]; });
+    return merged(work, schedule);
+}
+
+} // namespace tyndall::rg::stages
