@@ -165,6 +165,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             std::sort(a.families.begin(), a.families.end());
             a.families.erase(std::unique(a.families.begin(), a.families.end()), a.families.end());
             b.families = a.families;
+            a.concurrent = b.concurrent = a.concurrent || a.families.size() > 1; // nobody releases it between frames
         }
     }
 

@@ -102,6 +102,7 @@ private:
         if (!several_queues) {
             return;
         }
+        order_around_host_semaphores(graph_.resources[resource].import, uses);
         const ResourceCells& of = cells_.of_resource[resource];
         cell_uses_.resize(std::max<std::size_t>(cell_uses_.size(), of.count()));
         for (const Use& use : uses) {
@@ -110,6 +111,18 @@ private:
         for (std::uint32_t cell = 0; cell < of.count(); ++cell) {
             visit_cell(resource, cell_uses_[cell], several_families);
             cell_uses_[cell].clear();
+        }
+    }
+
+    /// The first use waits for the host's semaphore and the last one signals it, for all parts of the import.
+    void order_around_host_semaphores(std::uint32_t import, std::span<const Use> uses) {
+        for (const Use& use : uses) {
+            if (import != none && graph_.imports[import].waits_semaphore) {
+                add(uses.front(), use);
+            }
+            if (import != none && graph_.imports[import].signals_semaphore) {
+                add(use, uses.back());
+            }
         }
     }
 

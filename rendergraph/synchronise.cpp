@@ -117,12 +117,17 @@ private:
         Before before = entry;
         for (std::size_t g = 0; g < groups.size(); ++g) {
             connect(resource, cell, before, groups[g]);
-            before = Before{};
-            before.uses = groups[g].uses;
-            before.layout = groups[g].layout;
-            before.in_frame = true;
+            before = state_after(groups[g]);
         }
-        leave(resource, cell, before);
+        if (!groups.empty()) {
+            leave(resource, cell, before);
+        } else if (changes_untouched_parts(graph_, resource, schedule_.concurrent[resource])) {
+            const Use& last = uses_of(resource).back(); // it takes the part along
+            const Group along{{&last}, false, false, graph_.imports[graph_.resources[resource].import].final_layout};
+            connect(resource, cell, before, along);
+            before = state_after(along);
+            leave(resource, cell, before);
+        }
     }
 
     /// All dependencies between `before` and `group`, one for each queue of the group.
@@ -267,7 +272,7 @@ private:
     /// EXCLUSIVE resources whose content crosses families are released by the last use and acquired by the next.
     void set_ownership(Dependency& d, CellDependency& made, std::uint32_t resource, const Before& before,
                        std::uint32_t family) const {
-        if (schedule_.concurrent[resource] || d.discards) {
+        if (schedule_.concurrent[resource] || memory_.placements[resource].concurrent || d.discards) {
             return;
         }
         std::uint32_t owner = before.host_family;
@@ -298,9 +303,7 @@ private:
         const ResourceDesc& desc = graph_.resources[resource];
         Group after;
         std::uint32_t family = VK_QUEUE_FAMILY_IGNORED;
-        // The host wants all of an import in its final layout, also the parts that no pass touched.
-        const bool untouched = before.uses.empty();
-        const Use& last = untouched ? uses_of(resource).back() : *before.uses.back();
+        const Use& last = *before.uses.back();
         VkPipelineStageFlags2 stages = 0;
         VkAccessFlags2 access = 0;
         Hazard hazard = Hazard::import_exit;
@@ -310,7 +313,7 @@ private:
             stages = import.final_stages;
             access = import.final_access;
             family = import.final_family;
-        } else if (desc.has_history && desc.kind == ResourceKind::image && !untouched) {
+        } else if (desc.has_history && desc.kind == ResourceKind::image) {
             after.layout = out_.resting_layout[resource];
             hazard = Hazard::history_rest;
         } else {
@@ -321,7 +324,7 @@ private:
         const std::uint32_t own_family = topology_.queues[last.queue].family;
         const bool transfers =
             family != VK_QUEUE_FAMILY_IGNORED && family != own_family && !schedule_.concurrent[resource];
-        if (!transition && (untouched || (stages == 0 && !transfers))) {
+        if (!transition && stages == 0 && !transfers) {
             return;
         }
         CellDependency made{{}, exit_slot_, none, false, {}};
@@ -330,9 +333,6 @@ private:
         d.hazard = hazard;
         d.src_queue = d.dst_queue = last.queue;
         add_sources(d, before, last.queue);
-        if (untouched) { // chained to the host's semaphore, if a pass waits for one
-            d.src_stages = d.local_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-        }
         d.src_queue = last.queue; // the others are ordered before the last use
         d.dst_stages = stages;
         d.dst_access = access;

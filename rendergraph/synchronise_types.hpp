@@ -31,6 +31,25 @@ struct Before {
     std::uint32_t alias_of = none;
 };
 
+[[nodiscard]] inline Before state_after(const Group& group) {
+    Before before;
+    before.uses = group.uses;
+    before.layout = group.layout;
+    before.in_frame = true;
+    return before;
+}
+
+/// The host wants all of an import in its final state, also the parts that no pass touched.
+[[nodiscard]] inline bool changes_untouched_parts(const GraphDesc& graph, std::uint32_t resource, bool concurrent) {
+    const ResourceDesc& desc = graph.resources[resource];
+    const ImportDesc import = desc.import == none ? ImportDesc{} : graph.imports[desc.import];
+    const bool moves = !concurrent && import.initial_family != import.final_family &&
+                       import.initial_family != VK_QUEUE_FAMILY_IGNORED &&
+                       import.final_family != VK_QUEUE_FAMILY_IGNORED;
+    const bool changes = desc.kind == ResourceKind::image && import.final_layout != import.initial_layout;
+    return import.has_final && (moves || changes);
+}
+
 struct CellDependency {
     Dependency dependency;
     std::uint32_t slot; ///< of the consumer, the number of slots for exits
