@@ -31,13 +31,15 @@ std::string_view name_of(DiagnosticCode code) {
     case DiagnosticCode::bad_description: return "bad description";
     case DiagnosticCode::no_queue: return "no queue";
     case DiagnosticCode::unknown_injection_point: return "unknown injection point";
+    case DiagnosticCode::bad_file: return "file";
     }
     return "";
 }
 
 std::string to_text(const Diagnostic& diagnostic) {
-    std::string text =
-        place(diagnostic.where) + ": " + std::string(name_of(diagnostic.code)) + ": " + diagnostic.message;
+    const bool has_place = diagnostic.where.line() != 0;
+    std::string text = (has_place ? place(diagnostic.where) + ": " : "") + std::string(name_of(diagnostic.code)) +
+                       ": " + diagnostic.message;
     const bool same = diagnostic.where.line() == diagnostic.other_where.line() &&
                       std::string_view(diagnostic.where.file_name()) == diagnostic.other_where.file_name();
     if (!same) {

@@ -26,6 +26,7 @@ enum class DiagnosticCode : std::uint8_t {
     bad_description,         ///< zero extent, unknown format, more mips than the extent has, zero bytes
     no_queue,                ///< the topology has no queue for the pass
     unknown_injection_point, ///< the host declared no point of that name
+    bad_file,                ///< a file that describes a frame, its costs or its plan says something impossible
 };
 
 [[nodiscard]] std::string_view name_of(DiagnosticCode code);
@@ -42,7 +43,7 @@ struct Diagnostic {
 /// Never empty when it is returned as an error.
 using Diagnostics = std::vector<Diagnostic>;
 
-/// "file:line: code: message (see file:line)", one line.
+/// "file:line: code: message (see file:line)", one line; without places where there are none, as in a file's frame.
 [[nodiscard]] std::string to_text(const Diagnostic& diagnostic);
 [[nodiscard]] std::string to_text(const Diagnostics& diagnostics);
 

@@ -1,5 +1,7 @@
 #include "rendergraph/plan_text.hpp"
 
+#include "rendergraph/vulkan_names.hpp"
+
 namespace tyndall::rg {
 namespace {
 
@@ -11,76 +13,9 @@ std::string pass_name(const GraphDesc& graph, std::uint32_t pass) {
     return pass == none ? std::string("the host") : quoted(graph.passes[pass].name);
 }
 
-struct Bit {
-    std::uint64_t bit;
-    const char* name;
-};
-
-constexpr Bit stage_bits[] = {
-    {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, "indirect"},
-    {VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, "index input"},
-    {VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, "vertex input"},
-    {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "vertex"},
-    {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "fragment"},
-    {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "early tests"},
-    {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "late tests"},
-    {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "color output"},
-    {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "compute"},
-    {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "transfer"},
-    {VK_PIPELINE_STAGE_2_HOST_BIT, "host"},
-    {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, "all commands"},
-    {VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR, "acceleration structure build"},
-    {VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR, "ray tracing"},
-};
-constexpr Bit access_bits[] = {
-    {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, "indirect read"},
-    {VK_ACCESS_2_INDEX_READ_BIT, "index read"},
-    {VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT, "vertex read"},
-    {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform read"},
-    {VK_ACCESS_2_SHADER_READ_BIT, "shader read"},
-    {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sampled read"},
-    {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "storage read"},
-    {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "storage write"},
-    {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, "color read"},
-    {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "color write"},
-    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "depth read"},
-    {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "depth write"},
-    {VK_ACCESS_2_TRANSFER_READ_BIT, "transfer read"},
-    {VK_ACCESS_2_TRANSFER_WRITE_BIT, "transfer write"},
-    {VK_ACCESS_2_HOST_READ_BIT, "host read"},
-    {VK_ACCESS_2_HOST_WRITE_BIT, "host write"},
-    {VK_ACCESS_2_MEMORY_READ_BIT, "memory read"},
-    {VK_ACCESS_2_MEMORY_WRITE_BIT, "memory write"},
-};
-
-template <std::size_t N>
-std::string bits(const Bit (&table)[N], std::uint64_t mask) {
-    std::string text;
-    for (const Bit& entry : table) {
-        if ((mask & entry.bit) == entry.bit) {
-            text += (text.empty() ? "" : "|") + std::string(entry.name);
-            mask &= ~entry.bit;
-        }
-    }
-    if (mask != 0) {
-        text += (text.empty() ? "" : "|") + std::to_string(mask);
-    }
-    return text.empty() ? "none" : text;
-}
-
 std::string layout_name(VkImageLayout layout) {
-    switch (layout) {
-    case VK_IMAGE_LAYOUT_UNDEFINED: return "undefined";
-    case VK_IMAGE_LAYOUT_GENERAL: return "general";
-    case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL: return "color attachment";
-    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL: return "depth attachment";
-    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL: return "depth read-only";
-    case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL: return "shader read-only";
-    case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL: return "transfer source";
-    case VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL: return "transfer destination";
-    case VK_IMAGE_LAYOUT_PRESENT_SRC_KHR: return "present";
-    default: return std::to_string(layout);
-    }
+    const std::optional<std::string_view> name = name_in(layout_names(), layout);
+    return name ? std::string(*name) : std::to_string(layout);
 }
 
 std::string range_text(const GraphDesc& graph, const Dependency& d) {
@@ -168,8 +103,8 @@ std::string describe(const GraphDesc& graph, const Dependency& d) {
     if (d.alias_of != none) {
         text += ", in the memory of " + quoted(graph.resources[d.alias_of].name);
     }
-    text += ": " + bits(stage_bits, d.src_stages) + " (" + bits(access_bits, d.src_access) + ") -> " +
-            bits(stage_bits, d.dst_stages) + " (" + bits(access_bits, d.dst_access) + ")";
+    text += ": " + mask_text(stage_names(), d.src_stages) + " (" + mask_text(access_names(), d.src_access) + ") -> " +
+            mask_text(stage_names(), d.dst_stages) + " (" + mask_text(access_names(), d.dst_access) + ")";
     if (d.old_layout != d.new_layout) {
         text += ", " + layout_name(d.old_layout) + " -> " + layout_name(d.new_layout);
     }

@@ -1,0 +1,262 @@
+// Frames, costs and plans through JSON and back.
+#include "rendergraph/json.hpp"
+
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "rendergraph/verify.hpp"
+#include "tests/rendergraph/any_frame.hpp"
+#include "tests/rendergraph/frames.hpp"
+#include "tests/rendergraph/random_graph.hpp"
+#include "tests/rendergraph/same_frame.hpp"
+
+namespace tyndall::rg::test {
+namespace {
+
+std::string all_of(const Diagnostics& mistakes) {
+    return to_text(mistakes);
+}
+
+Frame there_and_back(const Frame& frame) {
+    const std::string text = frame_to_json(frame);
+    tl::expected<Frame, Diagnostics> again = frame_from_json(text);
+    EXPECT_TRUE(again) << all_of(again ? Diagnostics{} : again.error()) << text;
+    if (!again) {
+        return {};
+    }
+    expect_same(frame, *again);
+    EXPECT_EQ(text, frame_to_json(*again));
+    return std::move(*again);
+}
+
+/// Durations that depend on the seed, some unknown.
+Costs some_costs(std::uint32_t seed, std::size_t passes) {
+    Costs costs;
+    for (std::uint32_t i = 0; i < passes; ++i) {
+        costs.of_pass.push_back({1 + (seed * 7919 + i * 104729) % 900'000, i % 3});
+    }
+    costs.cross_queue_ns = 5'000 + seed % 3 * 7'500;
+    return costs;
+}
+
+TEST(FrameJson, RandomFramesComeBackTheSameAndPlanTheSame) {
+    const std::uint32_t count = random_graph_count(400);
+    for (std::uint32_t seed = 0; seed < count && !::testing::Test::HasFailure(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        AnyFrame made = any_frame(seed);
+        const Frame frame{"seed " + std::to_string(seed), made.graph, made.topology,
+                          some_costs(seed, made.graph.passes.size())};
+        const Frame again = there_and_back(frame);
+        const auto plan = compile(frame.graph, frame.topology, estimate_memory(frame.graph), {}, frame.costs);
+        const auto other = compile(again.graph, again.topology, estimate_memory(again.graph), {}, again.costs);
+        ASSERT_TRUE(plan && other);
+        EXPECT_EQ(plan_to_json(frame.graph, *plan), plan_to_json(again.graph, *other));
+    }
+}
+
+TEST(FrameJson, FramesOfBuildersComeBackTheSame) {
+    for (std::uint32_t seed = 0; seed < 200 && !::testing::Test::HasFailure(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        there_and_back({"", random_frame(seed).desc, random_topology(seed), {}});
+    }
+    there_and_back({"fog", fog_frame().desc, two_queues(), {}});
+}
+
+TEST(FrameJson, EverythingThatAFrameCanSay) {
+    GraphBuilder builder;
+    builder.set_injection_points({"early", "late"});
+    Image cube = builder.create_image("a@1", {.format = VK_FORMAT_R8G8B8A8_UINT,
+                                              .extent = {8, 8, 1},
+                                              .mips = 2,
+                                              .layers = 6,
+                                              .flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT,
+                                              .extra_usage = VK_IMAGE_USAGE_SAMPLED_BIT});
+    Image line =
+        builder.create_image("a", {.format = VK_FORMAT_R16_SFLOAT, .extent = {64, 1, 1}, .type = VK_IMAGE_TYPE_1D});
+    Image depth = builder.create_image(
+        "depth", {.format = VK_FORMAT_D32_SFLOAT_S8_UINT, .extent = {8, 8, 1}, .samples = VK_SAMPLE_COUNT_4_BIT});
+    Buffer unknown_bits = builder.create_buffer("b", {.size_bytes = 64, .extra_usage = 1U << 30U});
+    const Image before = line;
+    builder.begin_injection_point(1);
+    builder.add_pass("clears", PassKind::graphics)
+        .writes(cube, Access::color_attachment,
+                {.range = {0, 1, 2, 1}, .clear = VkClearValue{.color = {.uint32 = {1, 2, 3, 4000000000}}}})
+        .has_side_effect("");
+    builder.add_pass("depth", PassKind::graphics)
+        .writes(depth, Access::depth_attachment, {.clear = clear_depth(0.1F, 7)});
+    builder.add_pass("write", PassKind::compute)
+        .writes(line, Access::storage_compute)
+        .writes(unknown_bits, Access::storage_compute, {16, 32});
+    builder.add_pass("again", PassKind::compute).modifies(line, Access::storage_compute);
+    Image old = before;
+    old.version = 1;
+    builder.add_pass("old version", PassKind::compute).reads(old, Access::storage_compute).has_side_effect("looks");
+    GraphDesc graph = builder.finish().desc;
+    graph.variants.push_back({"form", {"long", "short"}, {}});
+    graph.passes[2].variant = 0;
+    graph.passes[2].form = 1;
+    graph.passes[3].forbidden_queues = queue_bit(QueueKind::compute) | queue_bit(QueueKind::transfer);
+    const QueueTopology odd = {{{QueueKind::graphics, 3, can_graphics | can_compute | can_transfer | can_host},
+                                {QueueKind::compute, 1, can_compute | can_transfer}}};
+    Costs costs;
+    costs.of_pass = {{}, {12, 3}, {}, {}, {1, 0}};
+    costs.unknown_pass_ns = 7;
+    costs.slowdown_permille = 1'250;
+    costs.threshold_ns = 0;
+    costs.threshold_permille = 0;
+    there_and_back({"all \"of\" it\n", graph, odd, costs});
+}
+
+TEST(FrameJson, CostsComeBackByTheNamesOfPasses) {
+    const DeclaredGraph declared = fog_frame();
+    Costs costs = some_costs(5, declared.desc.passes.size());
+    costs.threshold_ns = 77;
+    const std::string text = costs_to_json("made up", declared.desc, costs);
+    const auto again = costs_from_json(text, declared.desc);
+    ASSERT_TRUE(again) << all_of(again.error());
+    EXPECT_EQ(again->about, "made up");
+    EXPECT_EQ(again->costs, costs);
+    EXPECT_TRUE(again->without_pass.empty());
+
+    const auto other = costs_from_json(R"({"passes": {"density": {"duration_ns": 5}, "rain": {"duration_ns": 6}}})",
+                                       declared.desc, costs);
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->without_pass, std::vector<std::string>{"rain"});
+    EXPECT_EQ(other->costs.of_pass[0], (PassCost{5, 0}));
+    EXPECT_EQ(other->costs.of_pass[1], costs.of_pass[1]);
+}
+
+TEST(PlanJson, PlansOfRandomFramesComeBackTheSameAndAreProvedAgain) {
+    const std::uint32_t count = random_graph_count(400);
+    for (std::uint32_t seed = 0; seed < count && !::testing::Test::HasFailure(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const AnyFrame made = any_frame(seed);
+        const auto plan = compile(made.graph, made.topology, estimate_memory(made.graph), {},
+                                  some_costs(seed, made.graph.passes.size()));
+        ASSERT_TRUE(plan);
+        const std::string text = plan_to_json(made.graph, *plan);
+        const auto again = plan_from_json(text, made.graph);
+        ASSERT_TRUE(again) << all_of(again.error());
+        EXPECT_EQ(text, plan_to_json(made.graph, *again));
+        EXPECT_EQ(to_text(made.graph, *plan), to_text(made.graph, *again));
+        EXPECT_EQ(verify(made.graph, *again).size(), verify(made.graph, *plan).size());
+    }
+}
+
+TEST(PlanJson, APlanOfAnotherFrameIsRefused) {
+    const DeclaredGraph fog = fog_frame();
+    const GraphDesc other = random_frame(1).desc;
+    const auto plan = plan_from_json(plan_to_json(fog.desc, compiled(fog.desc, two_queues())), other);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(all_of(plan.error()), "file: The plan is of another frame: 'pass_names' differ\n"
+                                    "file: The plan is of another frame: 'resource_names' differ\n");
+}
+
+TEST(PlanJson, AnIndexOutsideItsTableIsRefused) {
+    const DeclaredGraph fog = fog_frame();
+    Plan plan = compiled(fog.desc, two_queues());
+    plan.dependencies[0].resource = 1000;
+    plan.batches[0].pass_count = 1000;
+    plan.placements.pop_back();
+    const auto again = plan_from_json(plan_to_json(fog.desc, plan), fog.desc);
+    ASSERT_FALSE(again);
+    EXPECT_EQ(all_of(again.error()), "file: The plan has an index outside its table as 'batches[0].first_pass'\n"
+                                     "file: The plan has an index outside its table as 'dependencies[0].resource'\n"
+                                     "file: The plan needs one of 'placements' for each resource\n");
+}
+
+// ---- mistakes ----------------------------------------------------------------------------------------------------
+
+std::string mistakes_of(std::string_view text) {
+    const auto frame = frame_from_json(text);
+    return frame ? "" : all_of(frame.error());
+}
+
+TEST(FrameJsonMistakes, BrokenSyntaxSaysWhere) {
+    EXPECT_EQ(mistakes_of(R"({"passes": [}])"), "file: The file is not valid JSON at byte 13, near '\"passes\": [}'\n");
+    EXPECT_EQ(mistakes_of(R"({"passes": [], "passes": []})"),
+              "file: The file gives the key 'passes' twice in one object\n");
+    EXPECT_EQ(mistakes_of("7"), "file: The frame must be an object\n");
+}
+
+TEST(FrameJsonMistakes, AllAtOnceEachWithPassResourceAndKey) {
+    const std::string text = R"({
+      "queues": ["graphics", "compte"],
+      "points": ["post"],
+      "resources": [
+        {"name": "depth", "format": "D32_SFLAOT", "size": [64, 64]},
+        {"name": "color", "format": "R8G8B8A8_UNORM", "size": [64, 64, 1, 1]},
+        {"name": "lights", "bytes": -4},
+        {"name": "nothing"},
+        {"name": "old", "history_of": "colour"},
+        {"name": "unread", "format": "R8_UNORM", "size": [0, 64]}
+      ],
+      "passes": [
+        {"name": "pre-pass", "kind": "graphcs", "accesses": [{"writes": "depht", "as": "depth_attachment"}]},
+        {"name": "opaque", "kind": "graphics", "colour": 1, "point": "pst",
+         "accesses": [{"writes": "color", "as": "color_atachment"}, {"raeds": "depth", "as": "sampled_fragment"}]},
+        {"name": "late", "kind": "compute", "duration_ns": 1.5, "accesses": [{"reads": "color@3", "as": "sampled_compute"}]},
+        {"name": "idle", "kind": "compute", "accesses": []}
+      ]})";
+    EXPECT_EQ(mistakes_of(text),
+              R"(file: Queue 1 has the unknown kind "compte"; did you mean 'compute'?
+file: Resource 'depth' has the unknown format 'D32_SFLAOT'; did you mean 'D32_SFLOAT'?
+file: Resource 'color' needs 1 to 3 whole numbers as 'size'
+file: Resource 'lights' needs a whole number from 0 to 18446744073709551615 as 'bytes'
+file: Resource 'nothing' needs 'format' and 'size' (an image), 'bytes' (a buffer) or 'history_of'
+file: Resource 'old' is the history of the unknown resource 'colour'; did you mean 'color'?
+file: Pass 'pre-pass' has the unknown kind 'graphcs'; did you mean 'graphics'?
+file: Pass 'pre-pass', access 0, names the unknown resource 'depht'; did you mean 'depth'?
+file: Pass 'opaque' has the unknown point 'pst'; did you mean 'post'?
+file: Pass 'opaque', access 0, has the unknown as 'color_atachment'; did you mean 'color_attachment'?
+file: Pass 'opaque', access 1, needs one of 'reads', 'writes' and 'modifies'
+file: Pass 'opaque', access 1, has the unknown key 'raeds'; did you mean 'reads'?
+file: Pass 'opaque' has the unknown key 'colour'
+file: Pass 'late' needs a whole number from 0 to 10000000000 as 'duration_ns'
+file: Pass 'late' names version 3 of 'color', but the frame makes 0
+bad description: Resource 'unread' has an extent, mip count or layer count of 0; give it at least 1
+empty pass: Pass 'idle' accesses nothing and has no side effect; declare what it does, or remove it
+)");
+}
+
+TEST(FrameJsonMistakes, NoRandomDamageCrashes) {
+    std::mt19937 bits(7);
+    const DeclaredGraph fog = fog_frame();
+    const std::string whole = frame_to_json({"", fog.desc, two_queues(), {}});
+    std::uint32_t refused = 0;
+    for (std::uint32_t i = 0; i < 2'000; ++i) {
+        std::string text = whole;
+        for (std::uint32_t k = 0; k < 1 + i % 3; ++k) {
+            text[bits() % text.size()] = static_cast<char>("0{}[]\",:x9"[bits() % 10]);
+        }
+        if (const auto frame = frame_from_json(text)) {
+            (void)compile(frame->graph, frame->topology, estimate_memory(frame->graph), {}, frame->costs);
+        } else {
+            EXPECT_FALSE(frame.error().empty());
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 1'000U);
+}
+
+/// The example of docs/frame.md compiles, and says what the page says.
+TEST(FrameJson, TheExampleInTheDocumentation) {
+    std::ifstream file(TYNDALL_FRAME_PAGE);
+    std::stringstream page;
+    page << file.rdbuf();
+    const std::string text = page.str();
+    const std::size_t begin = text.find("```json\n");
+    ASSERT_NE(begin, std::string::npos);
+    const std::size_t first = begin + 8;
+    const auto frame = frame_from_json(std::string_view(text).substr(first, text.find("```", first) - first));
+    ASSERT_TRUE(frame) << all_of(frame.error());
+    const auto plan = compile(frame->graph, frame->topology, estimate_memory(frame->graph), {}, frame->costs);
+    ASSERT_TRUE(plan) << all_of(plan.error());
+    EXPECT_TRUE(verify(frame->graph, *plan).empty());
+}
+
+} // namespace
+} // namespace tyndall::rg::test
