@@ -129,6 +129,25 @@ std::int64_t makespan_ns(const Work& work, const ItemSchedule& schedule, const C
     return run_queues(program, costs).makespan_ns;
 }
 
+QueueProgram program_of(const Schedule& schedule, const Costs& costs) {
+    QueueProgram program;
+    program.queue_count = schedule.queue_count;
+    program.queue = schedule.queue;
+    program.duration_ns.reserve(schedule.order.size());
+    program.first_wait.reserve(schedule.order.size() + 1);
+    program.first_wait.push_back(0);
+    program.producers.reserve(schedule.waits.size());
+    std::size_t wait = 0;
+    for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
+        program.duration_ns.push_back(duration_within_limits(costs, schedule.order[slot]));
+        for (; wait < schedule.waits.size() && schedule.waits[wait].slot == slot; ++wait) {
+            program.producers.push_back(schedule.waits[wait].producer);
+        }
+        program.first_wait.push_back(static_cast<std::uint32_t>(program.producers.size()));
+    }
+    return program;
+}
+
 ItemSchedule previous_schedule(const Work& work, const QueueTopology& topology, std::uint64_t passes_hash,
                                const Plan& previous) {
     const auto same_queue = [](const QueueInfo& a, const QueueInfo& b) {

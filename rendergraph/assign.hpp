@@ -56,12 +56,23 @@ struct ItemSchedule {
 /// The frame's length in the queue model. O((items + edges) x queues).
 [[nodiscard]] std::int64_t makespan_ns(const Work& work, const ItemSchedule& schedule, const Costs& costs);
 
-/// By item: the longest way from its start to the frame's end, with the mean cost of crossing queues on each edge.
-[[nodiscard]] std::vector<std::int64_t> upward_ranks(const Work& work, const Costs& costs);
-/// No schedule of these items on these queues is shorter. O(items + edges + items x queues).
-[[nodiscard]] std::int64_t lower_bound_ns(const Work& work, const Costs& costs);
-/// List scheduling by upward rank with insertion (HEFT; Topcuoglu, Hariri, Wu 2002). O(items log items + edges).
-[[nodiscard]] ItemSchedule list_schedule(const Work& work, const std::vector<std::int64_t>& ranks, const Costs& costs);
+/// The upward ranks of HEFT: by item, the longest way from its start to the frame's end, with the mean cost of crossing
+/// queues on each edge. And the items in that order, the longest way first; ties by number.
+struct Urgency {
+    std::vector<std::int64_t> rank_ns;
+    std::vector<std::uint32_t> items;
+};
+/// O(items log items + edges).
+[[nodiscard]] Urgency urgency_of(const Work& work, const Costs& costs);
+/// By item: the longest way from its end to the frame's end, with a wait only where no queue can run both passes.
+[[nodiscard]] std::vector<std::int64_t> tails(const Work& work, std::int64_t cross_ns);
+/// No schedule of these items on these queues is shorter: critical path, work bound to one queue, all work over all
+/// queues, each with the slowdown of the model and with what must come before and after. O(items x queues + edges).
+[[nodiscard]] std::int64_t lower_bound_ns(const Work& work, const Urgency& urgency, const Costs& costs);
+/// List scheduling by upward rank with insertion (HEFT; Topcuoglu, Hariri, Wu 2002), reluctant to use a queue for what
+/// can run elsewhere, in proportion to the work that cannot. O(items log items + edges).
+[[nodiscard]] ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs& costs,
+                                         std::int64_t reluctance_permille = permille);
 
 // ---- what is worth it --------------------------------------------------------------------------------------------
 
@@ -73,14 +84,19 @@ struct ItemSchedule {
 
 struct Decided {
     ItemSchedule schedule;
+    ItemSchedule previous;          ///< the previous schedule where a new one replaces it; else empty
     ItemSchedule home;              ///< what to fall back to
     std::int64_t home_ns = 0;       ///< its length
-    std::int64_t least_gain_ns = 0; ///< of `schedule` over `home`, below which it does not pay
+    std::int64_t least_gain_ns = 0; ///< of a new schedule over the one that it replaces
     AsyncDecision decision;
 };
 /// Compares home, list schedule and the previous schedule (or none) in the queue model, and takes what pays.
 [[nodiscard]] Decided decide(const Work& work, const QueueChoices& choices, bool async, const Costs& costs,
                              const ItemSchedule& previous);
+
+/// A schedule with all waits that it turned out to need: some only the uses tell, as a layout that is changed once for
+/// readers on several queues. Its run is what simulate() says of the finished plan. Items are slots.
+[[nodiscard]] QueueProgram program_of(const Schedule& schedule, const Costs& costs);
 
 /// Passes in submission order with queue and reason: what the rest of compile works from.
 [[nodiscard]] Assignment assignment_of(const Work& work, const ItemSchedule& schedule, const QueueChoices& choices);

@@ -10,41 +10,36 @@ void append(Diagnostics& to, Diagnostics from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// The frame's length with all waits that the schedule turned out to need.
-std::int64_t makespan_ns(const stages::Schedule& schedule, const Costs& costs) {
-    stages::QueueProgram program;
-    program.queue_count = schedule.queue_count;
-    program.queue = schedule.queue;
-    program.first_wait.push_back(0);
-    std::size_t wait = 0;
-    for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
-        program.duration_ns.push_back(stages::duration_within_limits(costs, schedule.order[slot]));
-        for (; wait < schedule.waits.size() && schedule.waits[wait].slot == slot; ++wait) {
-            program.producers.push_back(schedule.waits[wait].producer);
-        }
-        program.first_wait.push_back(static_cast<std::uint32_t>(program.producers.size()));
-    }
-    return stages::run_queues(program, costs).makespan_ns;
-}
-
-/// Some waits only the schedule knows: a layout changed once for readers on several queues. Where they cost what the
-/// overlap gained, everything stays at home.
+/// The decided schedule, unless waits that only a schedule knows cost what it gained.
 stages::Schedule schedule_what_pays(const GraphDesc& graph, const QueueTopology& topology, const stages::Cells& cells,
                                     const stages::Flow& flow, const stages::Work& work,
                                     const stages::QueueChoices& choices, const Costs& costs, stages::Decided& decided) {
+    const auto scheduled = [&](const stages::ItemSchedule& items) {
+        return schedule(graph, topology, cells, flow, assignment_of(work, items, choices));
+    };
     AsyncDecision& decision = decided.decision;
-    stages::Schedule scheduled = schedule(graph, topology, cells, flow, assignment_of(work, decided.schedule, choices));
+    stages::Schedule best = scheduled(decided.schedule);
     if (decision.reason != DecisionReason::overlap_pays) {
-        return scheduled;
+        return best;
     }
-    decision.overlap_ns = makespan_ns(scheduled, costs);
-    if (decided.home_ns - decision.overlap_ns >= decided.least_gain_ns) {
-        return scheduled;
+    decision.overlap_ns = run_queues(program_of(best, costs), costs).makespan_ns;
+    if (!decided.previous.items.empty()) {
+        stages::Schedule kept = scheduled(decided.previous);
+        const std::int64_t kept_ns = run_queues(program_of(kept, costs), costs).makespan_ns;
+        if (kept_ns - decision.overlap_ns < decided.least_gain_ns) {
+            best = std::move(kept);
+            decision.overlap_ns = kept_ns;
+            decision.kept_by_hysteresis = true;
+        }
+    }
+    const std::int64_t least_gain_ns = decision.kept_by_hysteresis ? 0 : decided.least_gain_ns;
+    if (decided.home_ns - decision.overlap_ns >= least_gain_ns) {
+        return best;
     }
     decision.reason = choices.any_away ? DecisionReason::forced : DecisionReason::gain_below_threshold;
     decision.overlaps = choices.any_away;
     decision.kept_by_hysteresis = false;
-    return schedule(graph, topology, cells, flow, assignment_of(work, decided.home, choices));
+    return scheduled(decided.home);
 }
 
 /// A dependency that shows why `batch` waits for `producer_batch`, `none` if only the order of memory asks for it.

@@ -58,7 +58,8 @@ Decided decide(const Work& work, const QueueChoices& choices, bool async, const 
         decision.serial_ns += duration;
     }
     out.home_ns = choices.any_away ? makespan_ns(work, out.home, costs) : decision.serial_ns;
-    decision.lower_bound_ns = lower_bound_ns(work, costs);
+    const Urgency urgency = urgency_of(work, costs);
+    decision.lower_bound_ns = lower_bound_ns(work, urgency, costs);
     decision.ceiling_ns = decision.serial_ns - decision.lower_bound_ns;
     decision.threshold_ns = threshold_ns(work, costs, decision.serial_ns);
     decision.overlap_ns = out.home_ns;
@@ -87,14 +88,13 @@ Decided decide(const Work& work, const QueueChoices& choices, bool async, const 
     if (!previous_gains && out.home_ns - decision.lower_bound_ns < least_gain) {
         return stay_home(DecisionReason::ceiling_below_threshold);
     }
-    ItemSchedule list = list_schedule(work, upward_ranks(work, costs), costs);
+    ItemSchedule list = list_schedule(work, urgency, costs);
     const std::int64_t list_ns = makespan_ns(work, list, costs);
     const bool list_pays = out.home_ns - list_ns >= least_gain;
     if (previous_gains && previous_ns - std::min(list_ns, out.home_ns) < least_gain) {
-        decision.kept_by_hysteresis = list_pays ? list != previous : true;
+        decision.kept_by_hysteresis = !list_pays || list != previous;
         decision.overlap_ns = previous_ns;
         out.schedule = previous;
-        out.least_gain_ns = 0;
     } else {
         decision.overlap_ns = list_ns;
         if (!list_pays) {
@@ -102,6 +102,7 @@ Decided decide(const Work& work, const QueueChoices& choices, bool async, const 
         }
         out.schedule = std::move(list);
         out.least_gain_ns = least_gain;
+        out.previous = previous_gains ? previous : ItemSchedule{};
     }
     decision.reason = DecisionReason::overlap_pays;
     decision.overlaps = true;

@@ -1,11 +1,14 @@
 // List scheduling by upward rank with insertion.
-// In: items, ranks. Out: queue and order of each. Invariant: an item starts after all items before it, with the latency
-// of crossing queues. Each item, the most urgent first, takes the queue on which it ends first, in a gap if one is long
-// enough; equal ends go to its home, then to the first queue. Source: HEFT (Topcuoglu, Hariri, Wu:
-// Performance-effective and low-complexity task scheduling for heterogeneous computing, 2002). Only the last few gaps
-// of a queue are looked at, as earlier ones lie before anything that is still ready: O(items log items + edges).
+// In: items, the most urgent first. Out: queue and order of each. Invariant: an item starts after all items before it,
+// with the latency of crossing queues. Each item, the most urgent first, takes the queue on which it ends first, in a
+// gap if one is long enough; equal ends go to its home, then to the first queue. A queue to which much work is bound
+// that can run nowhere else counts as later for an item that can: without that, items crowd out work that only the
+// graphics queue can do, while the other queues idle. Source: HEFT (Topcuoglu, Hariri, Wu: Performance-effective and
+// low-complexity task scheduling for heterogeneous computing, 2002). Only the last few gaps of a queue are looked at,
+// as earlier ones lie before anything that is still ready: O(items log items + edges).
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 
 #include "rendergraph/assign.hpp"
@@ -73,20 +76,36 @@ private:
     std::int64_t end_ = 0;
 };
 
+/// By queue, in permille: the work that can run nowhere else, against a fair share of all work.
+std::vector<std::int64_t> bound_shares(const Work& work) {
+    std::vector<std::int64_t> bound(work.queue_count, 0);
+    std::int64_t total = 0;
+    for (std::uint32_t item = 0; item < work.pass.size(); ++item) {
+        total += work.duration_ns[item];
+        if (std::has_single_bit(work.allowed[item])) {
+            bound[static_cast<std::uint32_t>(std::countr_zero(work.allowed[item]))] += work.duration_ns[item];
+        }
+    }
+    for (std::int64_t& share : bound) {
+        share = share * work.queue_count * permille / std::max<std::int64_t>(total, 1);
+    }
+    return bound;
+}
+
 } // namespace
 
-ItemSchedule list_schedule(const Work& work, const std::vector<std::int64_t>& ranks, const Costs& costs) {
+ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs& costs,
+                           std::int64_t reluctance_permille) {
+    const std::vector<std::int64_t> bound = bound_shares(work);
     const std::int64_t cross_ns = cross_queue_within_limits(costs);
     const auto count = static_cast<std::uint32_t>(work.pass.size());
-    std::vector<std::uint32_t> by_urgency(count);
-    std::iota(by_urgency.begin(), by_urgency.end(), 0U);
-    std::sort(by_urgency.begin(), by_urgency.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return ranks[a] != ranks[b] ? ranks[a] > ranks[b] : a < b; });
     std::vector<Lane> lanes(work.queue_count);
-    std::vector<std::int64_t> start(count);
+    std::vector<std::int64_t> starts(count);
     std::vector<std::uint32_t> queue(count);
-    for (const std::uint32_t item : by_urgency) {
+    for (const std::uint32_t item : urgency.items) {
+        const std::int64_t duration = work.duration_ns[item];
         std::uint32_t best_queue = none;
+        std::int64_t best_start = 0;
         Lane::Place best;
         for (std::uint32_t q = 0; q < std::min(work.queue_count, most_queues); ++q) {
             if ((work.allowed[item] >> q & 1U) == 0) {
@@ -95,16 +114,18 @@ ItemSchedule list_schedule(const Work& work, const std::vector<std::int64_t>& ra
             std::int64_t ready = 0;
             for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
                 const std::uint32_t from = work.in[edge];
-                ready = std::max(ready, start[from] + work.duration_ns[from] + (queue[from] != q ? cross_ns : 0));
+                ready = std::max(ready, starts[from] + work.duration_ns[from] + (queue[from] != q ? cross_ns : 0));
             }
-            const Lane::Place place = lanes[q].find(ready, work.duration_ns[item]);
-            if (best_queue == none || place.start < best.start || (place.start == best.start && q == work.home[item])) {
+            const Lane::Place place = lanes[q].find(ready, duration);
+            const std::int64_t start = place.start + duration / permille * (bound[q] * reluctance_permille / permille);
+            if (best_queue == none || start < best_start || (start == best_start && q == work.home[item])) {
                 best_queue = q;
+                best_start = start;
                 best = place;
             }
         }
-        lanes[best_queue].take(best, work.duration_ns[item]);
-        start[item] = best.start;
+        lanes[best_queue].take(best, duration);
+        starts[item] = best.start;
         queue[item] = best_queue;
     }
     // Starts of one queue differ, as no duration is zero.
@@ -112,7 +133,7 @@ ItemSchedule list_schedule(const Work& work, const std::vector<std::int64_t>& ra
     schedule.items.resize(count);
     std::iota(schedule.items.begin(), schedule.items.end(), 0U);
     std::sort(schedule.items.begin(), schedule.items.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return start[a] != start[b] ? start[a] < start[b] : a < b; });
+              [&](std::uint32_t a, std::uint32_t b) { return starts[a] != starts[b] ? starts[a] < starts[b] : a < b; });
     schedule.queue.resize(count);
     std::transform(schedule.items.begin(), schedule.items.end(), schedule.queue.begin(),
                    [&](std::uint32_t item) { return queue[item]; });

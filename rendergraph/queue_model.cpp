@@ -92,7 +92,7 @@ QueueRun run_queues(const QueueProgram& program, const Costs& costs) {
         const std::int64_t speed = running > 1 ? permille : slowdown;
         for (const Lane& lane : lanes) {
             if (lane.running != idle) {
-                event = std::min(event, now + (lane.remaining + speed - 1) / speed);
+                event = std::min(event, now + divided_up(lane.remaining, speed));
             }
         }
         if (event == never) {

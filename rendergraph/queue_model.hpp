@@ -13,6 +13,9 @@ inline constexpr std::int64_t longest_ns = 10'000'000'000; ///< of one pass or w
 inline constexpr std::int64_t permille = 1'000;
 inline constexpr std::int64_t largest_slowdown_permille = 10'000;
 
+[[nodiscard]] constexpr std::int64_t divided_up(std::int64_t a, std::int64_t b) {
+    return (a + b - 1) / b;
+}
 [[nodiscard]] std::int64_t duration_within_limits(const Costs& costs, std::uint32_t pass);
 [[nodiscard]] std::int64_t cross_queue_within_limits(const Costs& costs);
 [[nodiscard]] std::int64_t slowdown_within_limits(const Costs& costs);

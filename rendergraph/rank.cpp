@@ -1,39 +1,84 @@
 // How urgent each item is, and how short the frame can be at best.
-// In: items with durations and edges. Out: upward ranks; a lower bound of the makespan. O(items x queues + edges).
+// In: items with durations and edges. Out: upward ranks; a lower bound of the makespan.
+// O(items log items + items x queues + edges).
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <numeric>
 
 #include "rendergraph/assign.hpp"
 
 namespace tyndall::rg::stages {
 namespace {
 
-constexpr std::int64_t divided_up(std::int64_t a, std::int64_t b) {
-    return (a + b - 1) / b;
+/// A wait wherever no queue could run both ends of an edge.
+std::int64_t forced_wait_ns(const Work& work, std::uint32_t from, std::uint32_t to, std::int64_t cross_ns) {
+    return (work.allowed[from] & work.allowed[to]) == 0 ? cross_ns : 0;
 }
 
-/// The longest chain, with a wait wherever no queue could run both ends of an edge.
-std::int64_t critical_path_ns(const Work& work, std::int64_t cross_ns) {
-    std::vector<std::int64_t> end(work.pass.size(), 0);
-    std::int64_t longest = 0;
-    for (std::uint32_t item = 0; item < work.pass.size(); ++item) {
-        std::int64_t start = 0;
+/// By item: the longest way from the frame's start to its start.
+std::vector<std::int64_t> heads(const Work& work, std::int64_t cross_ns) {
+    std::vector<std::int64_t> head(work.pass.size(), 0);
+    for (std::uint32_t item = 0; item < head.size(); ++item) {
         for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
             const std::uint32_t from = work.in[edge];
-            const bool must_cross = (work.allowed[from] & work.allowed[item]) == 0;
-            start = std::max(start, end[from] + (must_cross ? cross_ns : 0));
+            head[item] =
+                std::max(head[item], head[from] + work.duration_ns[from] + forced_wait_ns(work, from, item, cross_ns));
         }
-        end[item] = start + work.duration_ns[item];
-        longest = std::max(longest, end[item]);
     }
-    return longest;
+    return head;
 }
+
+/// The shortest time in which the queues can do the items added so far. Beside the sum there are two weights of work
+/// that no moment of the model exceeds (s: slowdown, Q: usable queues). Everything counts s/Q: with k of Q queues busy,
+/// k/s of work is done, which counts k/Q <= 1; alone, 1 counts s/Q. Or work bound to one queue counts 1 and the rest
+/// (s-1)/(Q-1): beside k others it is (1 + k(s-1)/(Q-1))/s <= 1, and k others without it count k(s-1)/((Q-1)s) < 1.
+class Load {
+public:
+    Load(const Work& work, std::int64_t queues, std::int64_t slowdown)
+        : work_(work), queues_(queues), slowdown_(slowdown), bound_to_(work.queue_count, 0) {}
+    void add(std::uint32_t item) {
+        total_ += work_.duration_ns[item];
+        if (std::has_single_bit(work_.allowed[item])) {
+            bound_to_[static_cast<std::uint32_t>(std::countr_zero(work_.allowed[item]))] += work_.duration_ns[item];
+        }
+    }
+    [[nodiscard]] std::int64_t least_ns() const {
+        std::int64_t least = divided_up(total_ * slowdown_, queues_ * permille);
+        for (const std::int64_t bound : bound_to_) {
+            const std::int64_t rest = (total_ - bound) * (slowdown_ - permille);
+            least = std::max(least, bound + divided_up(rest, (queues_ - 1) * permille));
+        }
+        return least;
+    }
+
+private:
+    const Work& work_;
+    std::int64_t queues_;
+    std::int64_t slowdown_;
+    std::int64_t total_ = 0;
+    std::vector<std::int64_t> bound_to_; ///< by queue
+};
 
 } // namespace
 
-std::vector<std::int64_t> upward_ranks(const Work& work, const Costs& costs) {
+std::vector<std::int64_t> tails(const Work& work, std::int64_t cross_ns) {
+    std::vector<std::int64_t> tail(work.pass.size(), 0);
+    for (auto item = static_cast<std::uint32_t>(work.pass.size()); item-- > 0;) {
+        for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
+            const std::uint32_t from = work.in[edge];
+            tail[from] =
+                std::max(tail[from], tail[item] + work.duration_ns[item] + forced_wait_ns(work, from, item, cross_ns));
+        }
+    }
+    return tail;
+}
+
+Urgency urgency_of(const Work& work, const Costs& costs) {
     const std::int64_t cross_ns = cross_queue_within_limits(costs);
-    std::vector<std::int64_t> rank(work.pass.size(), 0);
+    Urgency urgency;
+    std::vector<std::int64_t>& rank = urgency.rank_ns;
+    rank.assign(work.pass.size(), 0);
     for (auto item = static_cast<std::uint32_t>(work.pass.size()); item-- > 0;) {
         rank[item] += work.duration_ns[item];
         const QueueMask here = work.allowed[item];
@@ -46,34 +91,45 @@ std::vector<std::int64_t> upward_ranks(const Work& work, const Costs& costs) {
             before = std::max(before, rank[item] + mean);
         }
     }
-    return rank;
+    urgency.items.resize(rank.size());
+    std::iota(urgency.items.begin(), urgency.items.end(), 0U);
+    std::sort(urgency.items.begin(), urgency.items.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return rank[a] != rank[b] ? rank[a] > rank[b] : a < b; });
+    return urgency;
 }
 
-// Beside the critical path, two weights of work that no moment of the model exceeds (s: slowdown, Q: usable queues).
-// Everything counts s/Q: with k of Q queues busy, k/s of work is done, which counts k/Q <= 1; alone, 1 counts
-// s/Q, or 1 where s > Q. Work bound to one queue counts 1 and the rest (s-1)/(Q-1): beside k others it is
-// (1 + k(s-1)/(Q-1))/s <= 1, and those others without it count k(s-1)/((Q-1)s) < 1.
-std::int64_t lower_bound_ns(const Work& work, const Costs& costs) {
+// Any set of items must be done before the shortest of their tails begins, and cannot begin before the shortest of
+// their heads is over. The sets looked at are the most urgent items and the least urgent ones, of every number; that of
+// all items is among them. The critical path bounds it too.
+std::int64_t lower_bound_ns(const Work& work, const Urgency& urgency, const Costs& costs) {
     const std::int64_t slowdown = slowdown_within_limits(costs);
-    std::int64_t total = 0;
+    const std::int64_t cross_ns = cross_queue_within_limits(costs);
     QueueMask usable = 0;
-    std::vector<std::int64_t> bound_to(work.queue_count, 0);
+    std::int64_t total = 0;
     for (std::uint32_t item = 0; item < work.pass.size(); ++item) {
-        total += work.duration_ns[item];
         usable |= work.allowed[item];
-        if (std::has_single_bit(work.allowed[item])) {
-            bound_to[static_cast<std::uint32_t>(std::countr_zero(work.allowed[item]))] += work.duration_ns[item];
-        }
+        total += work.duration_ns[item];
     }
     const std::int64_t queues = std::popcount(usable);
     if (queues < 2 || slowdown >= queues * permille) {
-        return total;
+        return total; // even with all queues busy no more is done than by one
     }
-    std::int64_t bound = std::max(critical_path_ns(work, cross_queue_within_limits(costs)),
-                                  divided_up(total * slowdown, queues * permille));
-    for (const std::int64_t bound_ns : bound_to) {
-        const std::int64_t rest = total - bound_ns;
-        bound = std::max(bound, bound_ns + divided_up(rest * (slowdown - permille), (queues - 1) * permille));
+    const std::vector<std::int64_t> head = heads(work, cross_ns);
+    const std::vector<std::int64_t> tail = tails(work, cross_ns);
+    std::int64_t bound = 0;
+    Load first(work, queues, slowdown);
+    std::int64_t shortest_tail = std::numeric_limits<std::int64_t>::max();
+    for (const std::uint32_t item : urgency.items) {
+        first.add(item);
+        shortest_tail = std::min(shortest_tail, tail[item]);
+        bound = std::max({bound, first.least_ns() + shortest_tail, head[item] + work.duration_ns[item] + tail[item]});
+    }
+    Load last(work, queues, slowdown);
+    std::int64_t shortest_head = std::numeric_limits<std::int64_t>::max();
+    for (auto item = urgency.items.rbegin(); item != urgency.items.rend(); ++item) {
+        last.add(*item);
+        shortest_head = std::min(shortest_head, head[*item]);
+        bound = std::max(bound, shortest_head + last.least_ns());
     }
     return bound;
 }
