@@ -63,6 +63,11 @@ void Replay::check_import_end(Object& object, const ImportDesc& import) {
         if (ours && import.final_stages != 0 && !visible_to_host(write, import)) {
             say(write.pass, " is not visible to the host's next access when the frame ends");
         }
+        const bool host_writes = (import.final_access & (writing | VK_ACCESS_2_MEMORY_WRITE_BIT)) != 0;
+        if (host_writes && std::any_of(atom.reads.begin(), atom.reads.end(),
+                                       [&](const Event& read) { return !before_host(read, import); })) {
+            say(none, " is still read when the host writes it after the frame");
+        }
         if (!import.signals_semaphore) {
             continue;
         }
@@ -71,6 +76,15 @@ void Replay::check_import_end(Object& object, const ImportDesc& import) {
             say(write.pass, " is still in use when the host's semaphore is signalled");
         }
     }
+}
+
+/// On whatever queue.
+bool Replay::before_host(const Event& event, const ImportDesc& import) const {
+    bool any = false;
+    for (std::uint32_t queue = 0; queue < plan_.topology.queues.size(); ++queue) {
+        any = any || order_.after(event.at, queue, destination_stages(import.final_stages));
+    }
+    return any;
 }
 
 /// On whatever queue.

@@ -83,6 +83,11 @@ std::uint32_t Replay::expected_version(const Object& object, const Atom& atom, s
 void Replay::record_access(const AccessDesc& access, const Toucher& toucher, const AttachmentOps* ops) {
     const ResourceDesc& resource = graph_.resources[access.resource];
     Object& object = memory_.of_resource(access.resource);
+    if (!object.holds_bytes) {
+        report(ViolationCode::race, access.pass, access.pass, access.resource,
+               pass_name(access.pass) + " touches " + resource_name(access.resource) +
+                   " and another resource in the same bytes");
+    }
     Event event;
     event.pass = access.pass;
     event.at = {toucher.queue, toucher.sequence, toucher.stages, false};

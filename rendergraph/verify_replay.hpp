@@ -61,6 +61,7 @@ private:
     // The frame's end.
     void check_end(std::uint32_t resource);
     void check_import_end(Object& object, const ImportDesc& import);
+    [[nodiscard]] bool before_host(const Event& event, const ImportDesc& import) const;
     [[nodiscard]] bool visible_to_host(const Event& event, const ImportDesc& import) const;
 
     const GraphDesc& graph_;

@@ -6,6 +6,8 @@
 #include <random>
 #include <span>
 
+#include "tests/rendergraph/random_costs.hpp"
+
 namespace tyndall::rg::test {
 namespace {
 
@@ -68,7 +70,9 @@ public:
                 make_pass("p" + std::to_string(i));
             }
         }
-        return {graph_.finish().desc, topology_};
+        GraphDesc graph = graph_.finish().desc;
+        Costs costs = random_costs(static_cast<std::uint32_t>(bits_()), graph.passes.size(), below(4) != 0);
+        return {std::move(graph), topology_, std::move(costs)};
     }
 
 private:
@@ -152,7 +156,7 @@ private:
                 import.final_stages = one_of(
                     {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_PIPELINE_STAGE_2_HOST_BIT, VkPipelineStageFlags2{0}});
                 import.final_access = import.final_stages == VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT
-                                          ? VK_ACCESS_2_TRANSFER_READ_BIT
+                                          ? one_of({VK_ACCESS_2_TRANSFER_READ_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT})
                                       : import.final_stages != 0 ? VK_ACCESS_2_HOST_READ_BIT
                                                                  : VkAccessFlags2{0};
             }
@@ -416,6 +420,10 @@ private:
 
 AnyFrame any_frame(std::uint32_t seed) {
     return Maker(seed).run();
+}
+
+tl::expected<Plan, Diagnostics> plan_of(const AnyFrame& frame) {
+    return compile(frame.graph, frame.topology, estimate_memory(frame.graph), {}, frame.costs);
 }
 
 std::uint32_t random_graph_count(std::uint32_t otherwise) {

@@ -4,21 +4,26 @@
 
 #include <cstdint>
 
+#include "rendergraph/compile.hpp"
 #include "rendergraph/graph.hpp"
-#include "rendergraph/plan.hpp"
 
 namespace tyndall::rg::test {
 
 struct AnyFrame {
     GraphDesc graph;
     QueueTopology topology;
+    Costs costs;
 };
 
 /// 1 to 3 queues of the same or different families; 2D, layered, mipped, 3D, colour, depth and stencil images; buffers
 /// with byte ranges; imports in all states, with semaphores and families; histories of both kinds; concurrent sharing;
 /// graphics, compute, transfer and host passes with queue wishes and side effects; every access of the table; reads of
-/// versions that were overwritten. The same seed gives the same frame everywhere. Compiles without a diagnostic.
+/// versions that were overwritten; durations for which overlap often pays. The same seed gives the same frame
+/// everywhere. Compiles without a diagnostic.
 [[nodiscard]] AnyFrame any_frame(std::uint32_t seed);
+
+/// As compile makes it, with estimated memory.
+[[nodiscard]] tl::expected<Plan, Diagnostics> plan_of(const AnyFrame& frame);
 
 /// TYNDALL_RANDOM_GRAPHS, or `otherwise`: how many random frames a test goes through.
 [[nodiscard]] std::uint32_t random_graph_count(std::uint32_t otherwise);
