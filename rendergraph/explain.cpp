@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rendergraph/plan_text.hpp"
+#include "rendergraph/reasons.hpp"
 
 namespace tyndall::rg {
 namespace {
@@ -29,10 +30,55 @@ std::string point_name(const GraphDesc& graph, std::uint32_t pass) {
     return point == none ? "-" : graph.points[point];
 }
 
-std::string mebibytes(VkDeviceSize bytes) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.2f MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
-    return text.data();
+std::string first_pass_of(const GraphDesc& graph, const Plan& plan, std::uint32_t batch) {
+    return "batch " + std::to_string(batch) + " (from '" +
+           graph.passes[plan.passes[plan.batches[batch].first_pass].pass].name + "')";
+}
+
+/// Waits, releases and the host's semaphores, batch by batch.
+std::string explain_batches(const GraphDesc& graph, const Plan& plan, const PlanOrder& order) {
+    std::string text;
+    for (std::uint32_t b = 0; b < plan.batches.size(); ++b) {
+        const Batch& batch = plan.batches[b];
+        const std::string subject = first_pass_of(graph, plan, b);
+        for (const BatchWait& wait : batch.waits) {
+            text += subject + " waits for batch " + std::to_string(wait.batch) + ": " +
+                    why_wait(graph, plan, order, b, wait) + "\n";
+        }
+        for (const std::uint32_t resource : batch.waits_imports) {
+            text += subject + " waits for the host's semaphore: it is the first to use '" +
+                    graph.resources[resource].name + "'\n";
+        }
+        for (const std::uint32_t dependency : batch.releases) {
+            text += subject + " ends with: " + describe(graph, plan.dependencies[dependency]) + "\n";
+        }
+        for (const std::uint32_t resource : batch.signals_imports) {
+            text += subject + " signals the host's semaphore: it is the last to use '" +
+                    graph.resources[resource].name + "'\n";
+        }
+    }
+    for (std::uint32_t d = plan.first_exit_barrier; d < plan.first_exit_barrier + plan.exit_barrier_count; ++d) {
+        text += "the frame ends with: " + describe(graph, plan.dependencies[d]) + "\n";
+    }
+    return text;
+}
+
+std::string explain_memory(const GraphDesc& graph, const Plan& plan, const PlanOrder& order) {
+    std::string text;
+    for (std::uint32_t r = 0; r < plan.placements.size(); ++r) {
+        const Placement& placement = plan.placements[r];
+        if (placement.kind == PlacementKind::heap) {
+            text += "memory of '" + graph.resources[r].name + "': " + mebibytes_text(placement.size_bytes) + " at " +
+                    mebibytes_text(placement.offset_bytes) + " of heap " + std::to_string(placement.heap) + ", " +
+                    why_memory(graph, plan, order, r) + "\n";
+        } else if (placement.kind == PlacementKind::history) {
+            text += "memory of '" + graph.resources[r].name + "': " + why_memory(graph, plan, order, r) + "\n";
+        }
+    }
+    for (const CulledResource& resource : plan.culled_resources) {
+        text += "'" + graph.resources[resource.resource].name + "' is not created: " + why_omitted(resource) + "\n";
+    }
+    return text;
 }
 
 } // namespace
@@ -71,20 +117,16 @@ std::string explain_table(const GraphDesc& graph, const Plan& plan, std::span<co
             text += "    barrier: " + describe(graph, plan.dependencies[d]) + "\n";
         }
     }
-    for (std::uint32_t b = 0; b < plan.batches.size(); ++b) {
-        for (const BatchWait& wait : plan.batches[b].waits) {
-            text += "batch " + std::to_string(b) + " (from '" +
-                    graph.passes[plan.passes[plan.batches[b].first_pass].pass].name + "') waits for batch " +
-                    std::to_string(wait.batch);
-            if (wait.first_dependency != none) {
-                text += ": " + describe(graph, plan.dependencies[wait.first_dependency]);
-            }
-            text += "\n";
-        }
+    const PlanOrder order(graph, plan);
+    text += explain_batches(graph, plan, order);
+    text += explain_memory(graph, plan, order);
+    for (std::uint32_t variant = 0; variant < plan.variants.size(); ++variant) {
+        text += why_form(graph, plan, variant) + "\n";
     }
-    text += "transient memory " + mebibytes(plan.statistics.transient_bytes) + ", without sharing " +
-            mebibytes(plan.statistics.transient_bytes_unaliased) + ", at least " +
-            mebibytes(plan.statistics.largest_live_set_bytes) + " are live at once\n";
+    text += "transient memory " + mebibytes_text(plan.statistics.transient_bytes) + ", without sharing " +
+            mebibytes_text(plan.statistics.transient_bytes_unaliased) + ", at least " +
+            mebibytes_text(plan.statistics.largest_live_set_bytes) + " are live at once\n";
+    text += describe(plan.decision) + "\n";
     return text;
 }
 

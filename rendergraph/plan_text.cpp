@@ -36,6 +36,13 @@ std::string queue_name(const Plan& plan, std::uint32_t queue) {
     return std::string(name_of(plan.topology.queues[queue].kind));
 }
 
+/// "1.25" of 125.
+std::string hundredths(std::int64_t value) {
+    const std::int64_t size = value < 0 ? -value : value;
+    const std::string digits = std::to_string(size % 100);
+    return (value < 0 ? "-" : "") + std::to_string(size / 100) + (digits.size() == 1 ? ".0" : ".") + digits;
+}
+
 } // namespace
 
 std::string_view name_of(Hazard hazard) {
@@ -112,6 +119,34 @@ std::string describe(const GraphDesc& graph, const Dependency& d) {
         text += d.transfers_ownership ? ", ownership between families" : ", across queues";
     }
     return text;
+}
+
+std::string milliseconds_text(std::int64_t nanoseconds) {
+    return hundredths((nanoseconds + (nanoseconds < 0 ? -5'000 : 5'000)) / 10'000) + " ms";
+}
+
+std::string mebibytes_text(VkDeviceSize bytes) {
+    constexpr VkDeviceSize mebibyte = VkDeviceSize{1} << 20U;
+    const VkDeviceSize rest = bytes % mebibyte;
+    return hundredths(static_cast<std::int64_t>(bytes / mebibyte * 100 + (rest * 100 + mebibyte / 2) / mebibyte)) +
+           " MiB";
+}
+
+std::string describe(const AsyncDecision& decision) {
+    std::string text = "ceiling " + milliseconds_text(decision.ceiling_ns) + ", predicted " +
+                       milliseconds_text(decision.serial_ns - decision.overlap_ns) + ", threshold " +
+                       milliseconds_text(decision.threshold_ns) + (decision.overlaps ? ": overlap" : ": serial");
+    switch (decision.reason) {
+    case DecisionReason::one_queue: text += ", there is one queue"; break;
+    case DecisionReason::switched_off: text += ", asynchronous queues are switched off"; break;
+    case DecisionReason::nothing_async_capable: text += ", no pass that is free to choose can run elsewhere"; break;
+    case DecisionReason::nothing_measured: text += ", no pass was measured"; break;
+    case DecisionReason::ceiling_below_threshold: text += ", even a perfect schedule would gain less"; break;
+    case DecisionReason::gain_below_threshold: text += ", the best schedule found gains less"; break;
+    case DecisionReason::overlap_pays: break;
+    case DecisionReason::forced: text += ", asked for by passes"; break;
+    }
+    return text + (decision.kept_by_hysteresis ? ", kept from the frame before" : "");
 }
 
 std::string to_text(const GraphDesc& graph, const Plan& plan) {

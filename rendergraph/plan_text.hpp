@@ -15,5 +15,12 @@ namespace tyndall::rg {
 [[nodiscard]] std::string why_culled(const GraphDesc& graph, const CulledPass& pass);
 [[nodiscard]] std::string why_queue(const PlannedPass& pass);
 [[nodiscard]] std::string describe(const GraphDesc& graph, const Dependency& dependency);
+/// "ceiling 0.41 ms, predicted 0.22 ms, threshold 0.10 ms: overlap": what overlap could gain at most, what it is
+/// predicted to gain, what it must gain; what was decided, and why where that does not follow.
+[[nodiscard]] std::string describe(const AsyncDecision& decision);
+/// "1.25 ms", rounded to the nearest hundredth.
+[[nodiscard]] std::string milliseconds_text(std::int64_t nanoseconds);
+/// "1.25 MiB", rounded to the nearest hundredth.
+[[nodiscard]] std::string mebibytes_text(VkDeviceSize bytes);
 
 } // namespace tyndall::rg
