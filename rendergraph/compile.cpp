@@ -2,6 +2,7 @@
 
 #include "rendergraph/assign.hpp"
 #include "rendergraph/stages.hpp"
+#include "rendergraph/variants.hpp"
 
 namespace tyndall::rg {
 namespace {
@@ -55,20 +56,14 @@ std::uint32_t dependency_behind(const Plan& plan, const std::vector<std::uint32_
     return none;
 }
 
-} // namespace
-
-tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopology& topology,
-                                        const MemoryRequirements& memory, const CompileOptions& options,
-                                        const Costs& costs, const Plan* previous) {
+/// Everything after validation, for a graph without variants.
+tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const QueueTopology& topology,
+                                              const MemoryRequirements& memory, const CompileOptions& options,
+                                              const Costs& costs, const Plan* previous, std::uint64_t passes_hash) {
     using namespace stages;
-    Diagnostics errors = graph.declaration_errors;
-    append(errors, validate(graph, topology));
-    if (!errors.empty()) {
-        return tl::unexpected(std::move(errors)); // what follows needs sound ranges
-    }
     const Cells cells = cut_into_cells(graph);
     const Flow everything = follow_versions(graph, cells);
-    append(errors, everything.errors);
+    Diagnostics errors = everything.errors;
     const Order order = order_passes(graph, everything);
     append(errors, order.errors);
     if (!errors.empty()) {
@@ -79,7 +74,6 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     const Flow flow = kept.culled_passes.empty() ? everything : follow_versions(graph, cells, &kept.pass);
     const QueueChoices choices = choose_queues(graph, topology, kept, options.async);
     const Work work = collect_work(flow, order, kept, choices, topology, costs);
-    const std::uint64_t passes_hash = hash_of_passes(graph);
     Decided decided =
         decide(work, choices, options.async, costs,
                previous != nullptr ? previous_schedule(work, topology, passes_hash, *previous) : ItemSchedule{});
@@ -138,6 +132,24 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     plan.decision = decided.decision;
     plan.passes_hash = passes_hash;
     return plan;
+}
+
+} // namespace
+
+tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopology& topology,
+                                        const MemoryRequirements& memory, const CompileOptions& options,
+                                        const Costs& costs, const Plan* previous) {
+    Diagnostics errors = graph.declaration_errors;
+    append(errors, stages::validate(graph, topology));
+    if (!errors.empty()) {
+        return tl::unexpected(std::move(errors)); // what follows needs sound ranges
+    }
+    const std::uint64_t passes_hash = stages::hash_of_passes(graph);
+    const auto compile_form = [&](const GraphDesc& form) {
+        return compile_valid(form, topology, memory, options, costs, previous, passes_hash);
+    };
+    return graph.variants.empty() ? compile_form(graph)
+                                  : stages::compile_variants(graph, costs, passes_hash, previous, compile_form);
 }
 
 } // namespace tyndall::rg

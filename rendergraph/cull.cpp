@@ -59,12 +59,14 @@ Kept cull(const GraphDesc& graph, const Flow& flow, const Order& order, bool ena
     std::vector<bool> touched(graph.resources.size(), false);
     std::vector<bool> touched_by_kept(graph.resources.size(), false);
     for (std::uint32_t pass = 0; pass < count; ++pass) {
-        if (!kept.pass[pass] && enabled) {
+        // What touches nothing is of another form than the one compiled; it goes even with culling off.
+        const bool may_go = enabled || graph.passes[pass].access_count == 0;
+        if (!kept.pass[pass] && may_go) {
             const bool no_consumer = first_consumer[pass] == none;
             kept.culled_passes.push_back({pass, no_consumer ? CullReason::no_consumer : CullReason::consumer_culled,
                                           no_consumer ? first_output[pass] : first_consumer[pass]});
         }
-        kept.pass[pass] = kept.pass[pass] || !enabled;
+        kept.pass[pass] = kept.pass[pass] || !may_go;
     }
     for (const AccessDesc& access : graph.accesses) {
         touched[access.resource] = true;

@@ -136,9 +136,22 @@ void GraphBuilder::share_between_queues(Buffer buffer) {
 
 PassBuilder GraphBuilder::add_pass(std::string_view name, PassKind kind, Where where) {
     const auto index = static_cast<std::uint32_t>(desc_.passes.size());
-    desc_.passes.push_back({.name = std::string(name), .kind = kind, .point = point_, .where = where});
+    desc_.passes.push_back(
+        {.name = std::string(name), .kind = kind, .variant = variant_, .form = form_, .point = point_, .where = where});
     callbacks_.entries_.emplace_back();
     return {*this, index};
+}
+
+std::uint32_t GraphBuilder::add_variant(std::string_view name, Where where) {
+    desc_.variants.push_back({.name = std::string(name), .where = where});
+    return static_cast<std::uint32_t>(desc_.variants.size() - 1);
+}
+
+void GraphBuilder::begin_form(std::uint32_t variant, std::string_view form) {
+    std::vector<std::string>& forms = desc_.variants[variant].forms;
+    variant_ = variant;
+    form_ = static_cast<std::uint32_t>(forms.size());
+    forms.emplace_back(form);
 }
 
 void GraphBuilder::set_injection_points(std::vector<std::string> names) {
@@ -260,6 +273,7 @@ DeclaredGraph GraphBuilder::finish() {
     callbacks_ = {};
     latest_version_.clear();
     point_ = none;
+    variant_ = none;
     id_ = next_identity(this, id_);
     return declared;
 }

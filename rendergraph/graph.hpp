@@ -39,6 +39,12 @@ struct Buffer {
     [[nodiscard]] bool valid() const { return resource != none; }
 };
 
+/// The handle to go on with after the forms of a variant: the content of whichever form is kept.
+template <typename Handle>
+[[nodiscard]] Handle either(Handle a, Handle b) {
+    return a.version < b.version ? b : a;
+}
+
 [[nodiscard]] VkClearValue clear_color(float r, float g, float b, float a);
 [[nodiscard]] VkClearValue clear_depth(float depth, std::uint32_t stencil = 0);
 
@@ -144,6 +150,24 @@ public:
     void begin_injection_point(std::uint32_t point) { point_ = point; }
     void end_injection_point() { point_ = none; }
 
+    /// A part of the frame in alternative forms, of which compile keeps the one with the shortest predicted frame:
+    ///
+    ///   const std::uint32_t culling = graph.add_variant("light culling");
+    ///   rg::Buffer by_depth = lists;
+    ///   graph.begin_form(culling, "by depth");  // waits for the depth pre-pass, culls more
+    ///   ...writes(by_depth, ...)...
+    ///   rg::Buffer by_frustum = lists;
+    ///   graph.begin_form(culling, "by frustum"); // overlaps the depth pre-pass, culls less
+    ///   ...writes(by_frustum, ...)...
+    ///   graph.end_form();
+    ///   lists = rg::either(by_depth, by_frustum);
+    ///
+    /// Passes declared from begin_form on belong to that form, which may also have none. Each form begins from the same
+    /// handles, so each needs its own copies.
+    [[nodiscard]] std::uint32_t add_variant(std::string_view name, Where where = Where::current());
+    void begin_form(std::uint32_t variant, std::string_view form);
+    void end_form() { variant_ = none; }
+
     [[nodiscard]] const ImageDesc* describe(Image image) const;
     [[nodiscard]] const BufferDesc* describe(Buffer buffer) const;
 
@@ -165,6 +189,8 @@ private:
 
     std::uint32_t id_;
     std::uint32_t point_ = none;
+    std::uint32_t variant_ = none;
+    std::uint32_t form_ = 0;
     GraphDesc desc_;
     std::vector<std::uint32_t> latest_version_; ///< per resource
     PassCallbacks callbacks_;

@@ -8,6 +8,7 @@
 #include "rendergraph/compile.hpp"
 #include "rendergraph/search.hpp"
 #include "rendergraph/simulate.hpp"
+#include "rendergraph/variants.hpp"
 
 namespace tyndall::rg {
 namespace {
@@ -53,6 +54,7 @@ VkDeviceSize peak_bytes(const GraphDesc& graph, const MemoryRequirements& memory
 /// What compile's `previous` needs to know of a plan.
 Plan as_previous(const Work& work, const ItemSchedule& schedule, const Plan& like) {
     Plan plan;
+    plan.variants = like.variants;
     plan.topology = like.topology;
     plan.passes_hash = like.passes_hash;
     for (std::size_t i = 0; i < schedule.items.size(); ++i) {
@@ -78,17 +80,22 @@ tl::expected<Refined, Diagnostics> refine_schedule(const GraphDesc& graph, const
     if (!may_choose) {
         return refined;
     }
-    const Cells cells = cut_into_cells(graph);
-    const Flow everything = follow_versions(graph, cells);
-    const Order order = order_passes(graph, everything);
-    const Kept kept = cull(graph, everything, order, options.culling);
-    const Flow flow = follow_versions(graph, cells, &kept.pass);
-    const QueueChoices choices = choose_queues(graph, topology, kept, options.async);
+    std::vector<std::uint32_t> forms;
+    for (const VariantDecision& variant : refined.plan.variants) {
+        forms.push_back(variant.form);
+    }
+    const OneForm one = with_forms(graph, forms);
+    const Cells cells = cut_into_cells(one.graph);
+    const Flow everything = follow_versions(one.graph, cells);
+    const Order order = order_passes(one.graph, everything);
+    const Kept kept = cull(one.graph, everything, order, options.culling);
+    const Flow flow = follow_versions(one.graph, cells, &kept.pass);
+    const QueueChoices choices = choose_queues(one.graph, topology, kept, options.async);
     const Work work = collect_work(flow, order, kept, choices, topology, costs);
     const Judge judge = [&](const ItemSchedule& items) {
-        const Schedule scheduled = schedule(graph, topology, cells, flow, assignment_of(work, items, choices));
+        const Schedule scheduled = schedule(one.graph, topology, cells, flow, assignment_of(work, items, choices));
         const QueueRun run = run_queues(program_of(scheduled, costs), costs);
-        return Score{run.makespan_ns, peak_bytes(graph, memory, scheduled, run),
+        return Score{run.makespan_ns, peak_bytes(one.graph, memory, scheduled, run),
                      static_cast<std::uint32_t>(scheduled.waits.size())};
     };
     const std::int64_t current_ns = simulate(graph, refined.plan, costs).makespan_ns;

@@ -36,6 +36,14 @@ public:
         for (const ResourceDesc& resource : graph_.resources) {
             description(resource);
         }
+        for (const VariantDesc& variant : graph_.variants) {
+            if (variant.forms.empty()) {
+                errors_.push_back({.code = DiagnosticCode::bad_description,
+                                   .message = "Variant " + quoted(variant.name) + " has no form; give it at least one",
+                                   .where = variant.where,
+                                   .other_where = variant.where});
+            }
+        }
         for (std::uint32_t i = 0; i < graph_.passes.size(); ++i) {
             pass(graph_.passes[i]);
         }
@@ -139,6 +147,15 @@ private:
         }
         if (pass.kind == PassKind::compute && pass.wish == QueueWish::transfer) {
             queue_error(pass, "is a compute pass but asks for the transfer queue, which cannot dispatch");
+        }
+        if (pass.variant != none &&
+            (pass.variant >= graph_.variants.size() || pass.form >= graph_.variants[pass.variant].forms.size())) {
+            errors_.push_back({.code = DiagnosticCode::bad_description,
+                               .pass = pass.name,
+                               .message = "Pass " + quoted(pass.name) +
+                                          " belongs to a form that no variant has; declare the variant and its forms",
+                               .where = pass.where,
+                               .other_where = pass.where});
         }
         const AccessDesc* first_attachment = nullptr;
         for (std::uint32_t i = pass.first_access; i < pass.first_access + pass.access_count; ++i) {

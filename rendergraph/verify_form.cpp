@@ -17,6 +17,9 @@ bool inside(const ResourceDesc& resource, const Region& region) {
 }
 
 std::string pass_mistake(const GraphDesc& graph, const Plan& plan) {
+    if (plan.variants.size() != graph.variants.size()) {
+        return "the plan does not say which form of each variant it has";
+    }
     std::vector<std::uint32_t> seen(graph.passes.size(), 0);
     for (const PlannedPass& planned : plan.passes) {
         if (planned.pass >= graph.passes.size() || planned.queue >= plan.topology.queues.size() ||
@@ -24,13 +27,16 @@ std::string pass_mistake(const GraphDesc& graph, const Plan& plan) {
             planned.first_attachment + planned.attachment_count > plan.attachments.size()) {
             return "a planned pass points outside the graph, the queues, the dependencies or the attachments";
         }
+        if (!of_kept_form(graph, plan, planned.pass)) {
+            return "a pass of a form that is not kept is planned";
+        }
         ++seen[planned.pass];
     }
     for (const CulledPass& culled : plan.culled_passes) {
         if (culled.pass >= graph.passes.size()) {
             return "a pass that is left out is not in the graph";
         }
-        if (graph.passes[culled.pass].has_side_effect) {
+        if (graph.passes[culled.pass].has_side_effect && of_kept_form(graph, plan, culled.pass)) {
             return "a pass with a side effect is left out";
         }
         ++seen[culled.pass];
@@ -90,6 +96,11 @@ std::string index_mistake(const GraphDesc& graph, const Plan& plan) {
 }
 
 } // namespace
+
+bool of_kept_form(const GraphDesc& graph, const Plan& plan, std::uint32_t pass) {
+    const PassDesc& desc = graph.passes[pass];
+    return desc.variant == none || plan.variants[desc.variant].form == desc.form;
+}
 
 std::vector<Violation> check_form(const GraphDesc& graph, const Plan& plan) {
     std::vector<Violation> found;

@@ -70,7 +70,7 @@ Object Memory::make_object(const GraphDesc& graph, const Plan& plan, std::uint32
         const Region region = region_of(resource, access.image_range, access.buffer_range);
         object.cuts_a.insert(object.cuts_a.end(), {region.first_a, region.end_a});
         object.cuts_b.insert(object.cuts_b.end(), {region.first_b, region.end_b});
-        if (is_write(access.direction)) {
+        if (is_write(access.direction) && of_kept_form(graph, plan, access.pass)) {
             object.writers.push_back(i);
         }
     }

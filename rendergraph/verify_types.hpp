@@ -12,6 +12,9 @@ namespace tyndall::rg::checker {
 /// placements inside their heaps.
 [[nodiscard]] std::vector<Violation> check_form(const GraphDesc& graph, const Plan& plan);
 
+/// Whether the plan keeps the form of its variant to which a pass belongs; passes of other forms do not exist for it.
+[[nodiscard]] bool of_kept_form(const GraphDesc& graph, const Plan& plan, std::uint32_t pass);
+
 inline constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 inline constexpr VkAccessFlags2 writing =
     VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
