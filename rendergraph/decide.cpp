@@ -9,16 +9,6 @@
 namespace tyndall::rg::stages {
 namespace {
 
-/// Largest integer whose square is at most `n`.
-std::int64_t square_root(std::int64_t n) {
-    std::int64_t root = 0;
-    for (std::int64_t bit = std::int64_t{1} << 31; bit > 0; bit >>= 1) {
-        const std::int64_t next = root + bit;
-        root = next <= n / next ? next : root;
-    }
-    return root;
-}
-
 bool anything_measured(const Work& work, const Costs& costs) {
     return std::any_of(work.pass.begin(), work.pass.end(), [&](std::uint32_t pass) {
         return pass < costs.of_pass.size() && costs.of_pass[pass].mean_ns > 0;

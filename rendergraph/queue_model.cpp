@@ -37,6 +37,14 @@ std::int64_t waits_over(const QueueProgram& program, const QueueRun& run, std::u
 
 } // namespace
 
+std::int64_t square_root(std::int64_t n) {
+    std::int64_t root = 0;
+    for (std::int64_t bit = std::int64_t{1} << 31; bit > 0; bit >>= 1) {
+        const std::int64_t next = root + bit;
+        root = next <= n / next ? next : root;
+    }
+    return root;
+}
 std::int64_t duration_within_limits(const Costs& costs, std::uint32_t pass) {
     return std::min(costs.duration_ns(pass), longest_ns);
 }

@@ -16,6 +16,8 @@ inline constexpr std::int64_t largest_slowdown_permille = 10'000;
 [[nodiscard]] constexpr std::int64_t divided_up(std::int64_t a, std::int64_t b) {
     return (a + b - 1) / b;
 }
+/// Largest integer whose square is at most `n`.
+[[nodiscard]] std::int64_t square_root(std::int64_t n);
 [[nodiscard]] std::int64_t duration_within_limits(const Costs& costs, std::uint32_t pass);
 [[nodiscard]] std::int64_t cross_queue_within_limits(const Costs& costs);
 [[nodiscard]] std::int64_t slowdown_within_limits(const Costs& costs);
