@@ -212,14 +212,14 @@ Json model_json(const Costs& costs) {
 }
 
 /// One resource, pass or access a line: as a person would write it.
-std::string dump(const Json& document) {
+std::string frame_text(const Json& document) {
     std::string text = "{\n";
     std::size_t keys_left = document.size();
     for (const auto& entry : document.items()) {
-        text += "  " + Json(entry.key()).dump() + ": ";
+        text += "  " + json::dump(entry.key(), -1) + ": ";
         const bool table = entry.value().is_array() && !entry.value().empty() && entry.value()[0].is_object();
         if (!table) {
-            text += entry.value().dump();
+            text += json::dump(entry.value(), -1);
         } else {
             text += "[\n";
             for (std::size_t i = 0; i < entry.value().size(); ++i) {
@@ -229,12 +229,12 @@ std::string dump(const Json& document) {
                     accesses.swap(row["accesses"]);
                     row.erase("accesses");
                 }
-                std::string line = row.dump();
+                std::string line = json::dump(row, -1);
                 if (!accesses.empty()) {
                     line.pop_back();
                     line += ", \"accesses\": [";
                     for (std::size_t k = 0; k < accesses.size(); ++k) {
-                        line += (k == 0 ? "\n      " : ",\n      ") + accesses[k].dump();
+                        line += (k == 0 ? "\n      " : ",\n      ") + json::dump(accesses[k], -1);
                     }
                     line += "]}";
                 }
@@ -273,7 +273,7 @@ std::string frame_to_json(const Frame& frame) {
     for (std::uint32_t i = 0; i < graph.passes.size(); ++i) {
         document["passes"].push_back(pass_json(frame, i, accesses));
     }
-    return dump(document);
+    return frame_text(document);
 }
 
 std::string costs_to_json(const std::string& about, const GraphDesc& graph, const Costs& costs) {
@@ -289,7 +289,7 @@ std::string costs_to_json(const std::string& about, const GraphDesc& graph, cons
             document["passes"][graph.passes[i].name] = cost;
         }
     }
-    return document.dump(2) + "\n";
+    return json::dump(document, 2) + "\n";
 }
 
 } // namespace tyndall::rg

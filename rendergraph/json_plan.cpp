@@ -297,7 +297,7 @@ std::string plan_to_json(const GraphDesc& graph, const Plan& plan) {
     Plan copy = plan; // the lists of fields serve reading too
     Writer writer(document);
     fields(writer, copy);
-    return document.dump(1) + "\n";
+    return json::dump(document, 1) + "\n";
 }
 
 tl::expected<Plan, Diagnostics> plan_from_json(std::string_view text, const GraphDesc& graph) {

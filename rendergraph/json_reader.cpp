@@ -125,6 +125,10 @@ Json mask(VulkanNames names, std::uint64_t bits) {
     return list;
 }
 
+std::string dump(const Json& document, int indent) {
+    return document.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 tl::expected<Json, Diagnostics> parse_document(std::string_view text) {
     SyntaxCheck check;
     const bool whole = Json::sax_parse(text.begin(), text.end(), &check);

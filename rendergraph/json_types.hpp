@@ -37,6 +37,9 @@ void complain(Diagnostics& mistakes, const Subject& subject, const std::string& 
 /// The names of a mask's bits; those without a name as one number.
 [[nodiscard]] Json mask(VulkanNames names, std::uint64_t bits);
 
+/// Text of a document; bytes of names that are no UTF-8 become U+FFFD. `indent` -1: one line.
+[[nodiscard]] std::string dump(const Json& document, int indent);
+
 /// The document, or where its syntax breaks, or the keys that one object gives twice.
 [[nodiscard]] tl::expected<Json, Diagnostics> parse_document(std::string_view text);
 
