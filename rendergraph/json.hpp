@@ -20,6 +20,9 @@ struct Frame {
     Costs costs;
 };
 
+/// A queue that a file only names: a family of its own that can do what such queues can on common devices.
+[[nodiscard]] QueueInfo usual_queue(QueueKind kind);
+
 /// The frame's graph without places in source code and without errors of its declaration: neither can be in a file.
 /// O(accesses).
 [[nodiscard]] std::string frame_to_json(const Frame& frame);

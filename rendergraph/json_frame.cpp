@@ -62,14 +62,14 @@ private:
                                        json::suggestion(value.get<std::string>(), json::list(json::queue_kinds)));
                 } else {
                     frame_->topology.queues.push_back(
-                        json::usual_queue(static_cast<QueueKind>(at - json::queue_kinds.begin())));
+                        usual_queue(static_cast<QueueKind>(at - json::queue_kinds.begin())));
                 }
                 continue;
             }
             ObjectReader reader(value, subject, mistakes_);
             const auto kind =
                 static_cast<QueueKind>(reader.choice("kind", json::list(json::queue_kinds), true).value_or(0));
-            QueueInfo queue = json::usual_queue(kind);
+            QueueInfo queue = usual_queue(kind);
             reader.number("family", queue.family);
             queue.capabilities =
                 static_cast<std::uint8_t>(reader.mask("can", json::capabilities).value_or(queue.capabilities));
@@ -322,6 +322,15 @@ Diagnostics further_mistakes(const Frame& frame, const Diagnostics& mistakes) {
 }
 
 } // namespace
+
+QueueInfo usual_queue(QueueKind kind) {
+    switch (kind) {
+    case QueueKind::graphics: break;
+    case QueueKind::compute: return {QueueKind::compute, 1, can_compute | can_transfer};
+    case QueueKind::transfer: return {QueueKind::transfer, 2, can_transfer};
+    }
+    return {QueueKind::graphics, 0, can_graphics | can_compute | can_transfer};
+}
 
 tl::expected<Frame, Diagnostics> frame_from_json(std::string_view text) {
     tl::expected<Json, Diagnostics> document = json::parse_document(text);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rendergraph/costs.hpp"
+#include "rendergraph/json.hpp"
 #include "rendergraph/json_types.hpp"
 #include "rendergraph/plan.hpp"
 #include "rendergraph/vulkan_names.hpp"
@@ -24,16 +25,6 @@ inline constexpr std::array<VulkanName, 4> capabilities = {
 template <std::size_t N>
 [[nodiscard]] std::vector<std::string_view> list(const std::array<std::string_view, N>& words) {
     return {words.begin(), words.end()};
-}
-
-/// What a queue is that the file only names: a family of its own, what such a queue can do on common devices.
-[[nodiscard]] constexpr QueueInfo usual_queue(QueueKind kind) {
-    switch (kind) {
-    case QueueKind::graphics: break;
-    case QueueKind::compute: return {QueueKind::compute, 1, can_compute | can_transfer};
-    case QueueKind::transfer: return {QueueKind::transfer, 2, can_transfer};
-    }
-    return {QueueKind::graphics, 0, can_graphics | can_compute | can_transfer};
 }
 
 /// "name@version" as two parts; the version is `none` where the text does not end in '@' and a number. Resources whose

@@ -28,7 +28,7 @@ void put_family(Json& object, std::uint32_t family) {
 }
 
 Json queue_json(const QueueInfo& queue) {
-    const QueueInfo usual = json::usual_queue(queue.kind);
+    const QueueInfo usual = usual_queue(queue.kind);
     const std::string_view kind = json::queue_kinds[static_cast<std::size_t>(queue.kind)];
     if (queue.family == usual.family && queue.capabilities == usual.capabilities) {
         return kind;

@@ -52,12 +52,27 @@ struct InfoArguments {
     bool json = false;
 };
 
+struct ScheduleArguments {
+    std::filesystem::path frame;
+    std::optional<std::string> queues; ///< "graphics", "graphics,compute" or "graphics,compute,transfer"
+    std::optional<std::filesystem::path> costs;
+    std::optional<std::filesystem::path> plan; ///< explained and verified instead of one that is compiled
+    std::vector<std::string> switches;
+    std::vector<std::filesystem::path> outputs; ///< .txt, .json, .dot and .html
+    std::optional<std::filesystem::path> trace;
+    bool verify = false;
+    bool json = false;
+};
+/// What --switch can name.
+[[nodiscard]] std::vector<std::string> schedule_switches();
+
 /// Exit codes of every subcommand.
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_failed = 1;    ///< the device or the machine failed
 inline constexpr int exit_bad_input = 2; ///< what the user gave cannot be used
 
 [[nodiscard]] int run_render(const RenderArguments& arguments);
+[[nodiscard]] int run_schedule(const ScheduleArguments& arguments);
 [[nodiscard]] int run_info(const InfoArguments& arguments);
 
 } // namespace tyndall::samples

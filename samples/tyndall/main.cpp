@@ -17,6 +17,26 @@ int bad_input(const std::string& sentence) {
     return exit_bad_input;
 }
 
+void add_schedule_options(CLI::App& command, ScheduleArguments& schedule) {
+    command.add_option("frame", schedule.frame, "frame description (docs/frame.md)")->required();
+    command.add_option("--queues", schedule.queues, "graphics[,compute[,transfer]]; without it, the frame's own");
+    command.add_option("--costs", schedule.costs, "durations of passes; without it, the frame's own");
+    command.add_option("--plan", schedule.plan, "a plan that --out FILE.json wrote: explained instead of a new one");
+    command.add_option("--switch", schedule.switches, "turn one thing off; may be given several times")
+        ->check(CLI::IsMember(schedule_switches()))
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command
+        .add_option("--out", schedule.outputs,
+                    "report (.txt, .html), plan (.json) or graph (.dot) to write; may be "
+                    "given several times")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.add_option("--trace", schedule.trace, "timeline to write, for Perfetto or chrome://tracing");
+    command.add_flag("--verify", schedule.verify, "prove the plan free of races, or list where it is not");
+    command.add_flag("--json", schedule.json, "print the plan as JSON instead of the report");
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Frame graph and volumetric light on Vulkan");
     app.name("tyndall");
@@ -57,6 +77,11 @@ int run(int argc, char** argv) {
     render_command->add_flag("--fp32", render.fp32, "32-bit scene colour and froxels");
     render_command->add_flag("--json", render.json, "print the timing table as JSON");
 
+    ScheduleArguments schedule;
+    CLI::App* schedule_command = app.add_subcommand(
+        "schedule", "Compile a frame that a JSON file describes, and explain the plan; no GPU needed");
+    add_schedule_options(*schedule_command, schedule);
+
     InfoArguments info;
     CLI::App* info_command = app.add_subcommand("info", "List devices, their queues and what is supported");
     info_command->add_option("--device", info.device, "part of a device's name, or its index");
@@ -78,7 +103,7 @@ int run(int argc, char** argv) {
         render.queues = queues == "two" ? Queues::two : Queues::one;
         return run_render(render);
     }
-    return run_info(info);
+    return schedule_command->parsed() ? run_schedule(schedule) : run_info(info);
 }
 
 } // namespace
