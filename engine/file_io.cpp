@@ -59,7 +59,8 @@ tl::expected<void, Error> replace_file(const std::filesystem::path& path, std::s
     if (!file) {
         return failed("write", path, errno);
     }
-    const bool written = std::fwrite(content.data(), 1, content.size(), file.get()) == content.size();
+    const bool written =
+        content.empty() || std::fwrite(content.data(), 1, content.size(), file.get()) == content.size();
     int error = written ? 0 : errno;
     if (std::fclose(file.release()) != 0 && error == 0) { // the rest of the buffer is written here
         error = errno;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/transition.hpp"
 #include "rendergraph/access.hpp"
 
 namespace tyndall::engine {
@@ -14,22 +15,8 @@ namespace {
 /// Staging memory is let go in portions, so that a large scene does not need it twice over.
 constexpr VkDeviceSize staging_limit_bytes = 256ULL << 20U;
 
-void transition(const Device& device, VkCommandBuffer cmd, VkImage image, std::uint32_t mip, std::uint32_t count,
-                VkImageLayout from, VkImageLayout to) {
-    const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                        .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                        .oldLayout = from,
-                                        .newLayout = to,
-                                        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                        .image = image,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, mip, count, 0, 1}};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
-    device.vk().CmdPipelineBarrier2(cmd, &dependency);
+constexpr VkImageSubresourceRange color_mips(std::uint32_t first, std::uint32_t count) {
+    return {VK_IMAGE_ASPECT_COLOR_BIT, first, count, 0, 1};
 }
 
 VkOffset3D corner(VkExtent2D extent, std::uint32_t mip) {
@@ -171,7 +158,7 @@ tl::expected<DeviceImage, Error> Uploader::texture(std::span<const std::byte> te
         return tl::unexpected(cmd.error());
     }
     const rg::DeviceTable& vk = device_->vk();
-    transition(*device_, *cmd, image->handle(), 0, mips, VK_IMAGE_LAYOUT_UNDEFINED,
+    transition(*device_, *cmd, image->handle(), color_mips(0, mips), VK_IMAGE_LAYOUT_UNDEFINED,
                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     const VkBufferImageCopy2 region{.sType = VK_STRUCTURE_TYPE_BUFFER_IMAGE_COPY_2,
                                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
@@ -184,7 +171,7 @@ tl::expected<DeviceImage, Error> Uploader::texture(std::span<const std::byte> te
                                         .pRegions = &region};
     vk.CmdCopyBufferToImage2(*cmd, &copy);
     for (std::uint32_t mip = 1; mip < mips; ++mip) {
-        transition(*device_, *cmd, image->handle(), mip - 1, 1, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        transition(*device_, *cmd, image->handle(), color_mips(mip - 1, 1), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         const VkImageBlit2 halve{.sType = VK_STRUCTURE_TYPE_IMAGE_BLIT_2,
                                  .srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1},
@@ -202,10 +189,10 @@ tl::expected<DeviceImage, Error> Uploader::texture(std::span<const std::byte> te
         vk.CmdBlitImage2(*cmd, &blit);
     }
     if (mips > 1) {
-        transition(*device_, *cmd, image->handle(), 0, mips - 1, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+        transition(*device_, *cmd, image->handle(), color_mips(0, mips - 1), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     }
-    transition(*device_, *cmd, image->handle(), mips - 1, 1, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+    transition(*device_, *cmd, image->handle(), color_mips(mips - 1, 1), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     return image;
 }

@@ -181,7 +181,7 @@ public:
     /// Into `host_cmd`, or submitted if that is null.
     [[nodiscard]] tl::expected<std::uint64_t, ExecuteError> execute(VkCommandBuffer host_cmd, const GraphDesc& graph,
                                                                     const Plan& plan, const PassCallbacks& callbacks,
-                                                                    std::span<const ImportBinding> imports);
+                                                                    std::span<const ImportBinding> given);
     [[nodiscard]] Result begin_frame();
     [[nodiscard]] Result record_and_submit(VkCommandBuffer host_cmd);
     void finish_frame();
@@ -200,13 +200,13 @@ public:
     [[nodiscard]] Result create_object(const ObjectKey& key, const std::string& name, PhysicalObject& object);
     [[nodiscard]] VkMemoryRequirements requirements_of(const PhysicalObject& object) const;
     [[nodiscard]] tl::expected<VkDeviceMemory, ExecuteError> allocate(VkDeviceSize size, std::uint32_t type_bits,
-                                                                      bool device_address) const;
+                                                                      bool addressed) const;
     [[nodiscard]] VkResult bind_memory(const PhysicalObject& object, VkDeviceMemory memory, VkDeviceSize offset) const;
     void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
     // executor_objects.cpp: keeping them from frame to frame
-    [[nodiscard]] Result bind_objects(std::span<const ImportBinding> imports);
-    [[nodiscard]] Result bind_imports(std::span<const ImportBinding> imports);
+    [[nodiscard]] Result bind_objects(std::span<const ImportBinding> given);
+    [[nodiscard]] Result bind_imports(std::span<const ImportBinding> given);
     [[nodiscard]] Result bind_transients();
     [[nodiscard]] Result bind_histories();
     [[nodiscard]] bool matches(const TransientSet& set) const;
@@ -232,7 +232,7 @@ public:
     [[nodiscard]] Result record_segments();
     void record_into(VkCommandBuffer cmd);
     [[nodiscard]] Result begin_segment(Segment& segment);
-    void record_batch(VkCommandBuffer cmd, std::uint32_t batch);
+    void record_batch(VkCommandBuffer cmd, std::uint32_t index);
     void record_pass(VkCommandBuffer cmd, const PlannedPass& planned);
     [[nodiscard]] VkExtent2D begin_rendering(VkCommandBuffer cmd, const PlannedPass& planned);
 

@@ -54,7 +54,7 @@ tl::expected<void, Error> validate(const FrameInputs& inputs, std::uint32_t slot
     if (inputs.sun) {
         const glm::vec3& lux = inputs.sun->illuminance_lux;
         for (int i = 0; i < 3; ++i) {
-            if (!(lux[i] >= 0.0F && lux[i] <= 1e9F)) {
+            if (!std::isfinite(lux[i]) || lux[i] < 0.0F || lux[i] > 1e9F) {
                 return tl::unexpected(Error{"sun.illuminance_lux must be between 0 and 1e9."});
             }
         }
@@ -171,7 +171,7 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
         const bool compact = inputs.light_count <= TYNDALL_COMPACT_LIGHT_COUNT;
         frame.lights = !cluster ? LocalLights::all : compact ? LocalLights::clustered_compact : LocalLights::clustered;
     }
-    state.frame = std::move(frame);
+    state.frame = frame;
     if (auto made = state.prepare_programs(); !made) {
         state.frame.reset();
         return made;

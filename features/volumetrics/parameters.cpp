@@ -1,8 +1,10 @@
 #include "features/volumetrics/parameters.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include <glm/matrix.hpp>
 
@@ -125,7 +127,8 @@ bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& bef
     gpu::ScatteringVolume now = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
     now.scale.x = before->volume.scale.x;
     now.scale.y = before->volume.scale.y;
-    return std::memcmp(&now, &before->volume, sizeof now) != 0;
+    using Words = std::array<std::uint32_t, sizeof now / 4>;
+    return std::bit_cast<Words>(now) != std::bit_cast<Words>(before->volume);
 }
 
 bool camera_stands(const FrameInputs& frame, const std::optional<FrameMemory>& before) {

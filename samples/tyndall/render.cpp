@@ -197,7 +197,7 @@ Expected<void> render_frames(const RenderArguments& arguments, const engine::Dev
             timings.add_frame(loop.graph(), loop.timings());
         }
     }
-    if (const Expected<void> written = write_outputs(arguments, loop); !written) {
+    if (Expected<void> written = write_outputs(arguments, loop); !written) {
         return written;
     }
     const std::string device_text = device.info().name + ", " + device.info().driver;
@@ -205,17 +205,17 @@ Expected<void> render_frames(const RenderArguments& arguments, const engine::Dev
     const std::string explain_text = explain(loop, timings);
     if (arguments.stages_dir) {
         progress.show("stages");
-        if (const Expected<void> dumped = dump_stages(device, loop, wishes, *arguments.stages_dir); !dumped) {
+        if (Expected<void> dumped = dump_stages(device, loop, wishes, *arguments.stages_dir); !dumped) {
             return dumped;
         }
     }
     if (arguments.explain_file) {
-        if (const Expected<void> written = write_text(*arguments.explain_file, explain_text); !written) {
+        if (Expected<void> written = write_text(*arguments.explain_file, explain_text); !written) {
             return written;
         }
     }
     if (arguments.timing_file) {
-        if (const Expected<void> written = write_text(*arguments.timing_file, timing_text); !written) {
+        if (Expected<void> written = write_text(*arguments.timing_file, timing_text); !written) {
             return written;
         }
     }
@@ -229,7 +229,7 @@ Expected<void> render_frames(const RenderArguments& arguments, const engine::Dev
 }
 
 Expected<void> render(const RenderArguments& arguments) {
-    if (const Expected<void> checked = check_arguments(arguments); !checked) {
+    if (Expected<void> checked = check_arguments(arguments); !checked) {
         return checked;
     }
     Expected<std::optional<volumetrics::Fog>> fog = load_fog(arguments);
@@ -293,7 +293,7 @@ Expected<void> render(const RenderArguments& arguments) {
     FrameWishes wishes;
     wishes.camera = camera;
     wishes.size = {arguments.size.width, arguments.size.height};
-    const Expected<void> rendered = render_frames(arguments, *device, **loop, wishes, *progress);
+    Expected<void> rendered = render_frames(arguments, *device, **loop, wishes, *progress);
     progress.reset();
     loop->reset();
     if (!rendered) {

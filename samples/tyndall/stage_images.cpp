@@ -85,6 +85,19 @@ private:
 
 } // namespace
 
+tl::expected<rg::Buffer, engine::Error> StageImages::host_buffer(rg::GraphBuilder& graph, Capture& capture,
+                                                                 VkDeviceSize bytes) {
+    auto buffer =
+        engine::Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, engine::MemoryUse::readback);
+    if (!buffer) {
+        return tl::unexpected(buffer.error());
+    }
+    capture.buffer = std::move(*buffer);
+    const rg::Buffer out = graph.import_buffer("picture of " + capture.name, {.size_bytes = bytes}, to_host);
+    bindings_.push_back({.resource = out.resource, .buffer = capture.buffer.handle()});
+    return out;
+}
+
 tl::expected<void, engine::Error> StageImages::capture_image(rg::GraphBuilder& graph, Capture capture,
                                                              rg::Image image) {
     const rg::ImageDesc* desc = graph.describe(image);
@@ -97,14 +110,11 @@ tl::expected<void, engine::Error> StageImages::capture_image(rg::GraphBuilder& g
     capture.slices = std::max(desc->extent.depth, desc->layers);
     const VkDeviceSize texels = VkDeviceSize{capture.width} * capture.height * capture.slices;
     const VkDeviceSize bytes = texels * rg::format_texel_bytes(desc->format);
-    auto buffer =
-        engine::Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, engine::MemoryUse::readback);
-    if (!buffer) {
-        return tl::unexpected(buffer.error());
+    auto bound = host_buffer(graph, capture, bytes);
+    if (!bound) {
+        return tl::unexpected(bound.error());
     }
-    capture.buffer = std::move(*buffer);
-    rg::Buffer out = graph.import_buffer("picture of " + capture.name, {.size_bytes = bytes}, to_host);
-    bindings_.push_back({.resource = out.resource, .buffer = capture.buffer.handle()});
+    rg::Buffer out = *bound;
     graph.add_pass("copy " + capture.name, rg::PassKind::transfer)
         .reads(image, rg::Access::transfer_source)
         .writes(out, rg::Access::transfer_destination)
@@ -127,14 +137,11 @@ tl::expected<void, engine::Error> StageImages::capture_image(rg::GraphBuilder& g
 tl::expected<void, engine::Error> StageImages::capture_masks(rg::GraphBuilder& graph, Capture capture,
                                                              rg::Buffer masks) {
     const VkDeviceSize bytes = graph.describe(masks)->size_bytes;
-    auto buffer =
-        engine::Buffer::create(*device_, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, engine::MemoryUse::readback);
-    if (!buffer) {
-        return tl::unexpected(buffer.error());
+    auto bound = host_buffer(graph, capture, bytes);
+    if (!bound) {
+        return tl::unexpected(bound.error());
     }
-    capture.buffer = std::move(*buffer);
-    rg::Buffer out = graph.import_buffer("picture of " + capture.name, {.size_bytes = bytes}, to_host);
-    bindings_.push_back({.resource = out.resource, .buffer = capture.buffer.handle()});
+    rg::Buffer out = *bound;
     graph.add_pass("copy " + capture.name, rg::PassKind::transfer)
         .reads(masks, rg::Access::transfer_source)
         .writes(out, rg::Access::transfer_destination)

@@ -42,6 +42,9 @@ private:
         std::uint32_t words = 1; ///< clusters: of a mask
         float esm_exponent = 1.0F;
     };
+    /// Where the picture lands: memory of the capture, imported into the graph.
+    [[nodiscard]] tl::expected<rg::Buffer, engine::Error> host_buffer(rg::GraphBuilder& graph, Capture& capture,
+                                                                      VkDeviceSize bytes);
     [[nodiscard]] tl::expected<void, engine::Error> capture_image(rg::GraphBuilder& graph, Capture capture,
                                                                   rg::Image image);
     [[nodiscard]] tl::expected<void, engine::Error> capture_masks(rg::GraphBuilder& graph, Capture capture,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <deque>
 #include <optional>
 #include <span>
@@ -27,7 +26,7 @@ protected:
     template <typename T>
     [[nodiscard]] engine::Buffer& upload(std::span<const T> values) {
         engine::Buffer& buffer = host_buffer(std::max<std::size_t>(values.size_bytes(), 16));
-        std::memcpy(buffer.mapped().data(), values.data(), values.size_bytes());
+        std::ranges::copy(std::as_bytes(values), buffer.mapped().begin());
         return buffer;
     }
 

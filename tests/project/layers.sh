@@ -25,7 +25,9 @@ report() {
 allow rendergraph 'rendergraph'
 allow features 'rendergraph|features|shaders|spirv'
 allow engine 'rendergraph|engine|shaders/common|shaders/engine|spirv'
-forbid rendergraph '# *include *<(glm|GLFW|nlohmann)/' 'needs Vulkan headers and tl::expected only'
+forbid rendergraph '# *include *<(glm|GLFW)/' 'needs Vulkan headers and tl::expected, and a JSON library for reports'
+report 'rendergraph reads and writes JSON through json_types.hpp only' \
+    "$(grep -rnE --include='*.hpp' --include='*.cpp' '# *include *<nlohmann/' rendergraph | grep -v '^rendergraph/json_types.hpp:' || true)"
 forbid rendergraph '# *include *<vulkan/vulkan.h(pp)?>' 'includes vulkan_core.h and no platform headers'
 forbid features '# *include *<GLFW/' 'opens no window'
 forbid engine 'volumetrics(/|::)' 'knows no feature by name'

@@ -66,7 +66,8 @@ TEST_F(ExecutorTest, TransientsThatShareMemoryKeepTheirContent) {
         ASSERT_FALSE(error.has_value()) << error->message;
         const std::span<Texel> texels = result.as<Texel>();
         for (std::uint32_t i = 0; i < texels.size(); ++i) {
-            const Texel expected = {static_cast<float>(i % 64) + 4.0F, static_cast<float>(i / 64) + 4.0F, 5.0F, 6.0F};
+            const std::uint32_t row = i / 64;
+            const Texel expected = {static_cast<float>(i % 64) + 4.0F, static_cast<float>(row) + 4.0F, 5.0F, 6.0F};
             ASSERT_EQ(texels[i], expected) << "texel " << i << ", frame " << frame;
         }
     }

@@ -57,7 +57,8 @@ public:
 
 private:
     [[nodiscard]] long double at(int x, int y) const {
-        return texels_[static_cast<std::size_t>(std::clamp(y, 0, size_ - 1) * size_ + std::clamp(x, 0, size_ - 1))];
+        return texels_[static_cast<std::size_t>(std::clamp(y, 0, size_ - 1)) * static_cast<std::size_t>(size_) +
+                       static_cast<std::size_t>(std::clamp(x, 0, size_ - 1))];
     }
     void blur(int dx, int dy) {
         const long double weights[] = {1, 4, 6, 4, 1};
