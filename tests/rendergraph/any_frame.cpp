@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <random>
 #include <span>
 
+#include "tests/rendergraph/any_parts.hpp"
 #include "tests/rendergraph/random_costs.hpp"
 
 namespace tyndall::rg::test {
@@ -54,127 +54,38 @@ public:
     explicit Maker(std::uint32_t seed) : bits_(seed) {}
 
     AnyFrame run() {
-        make_topology();
-        const std::uint32_t resources = 3 + below(6);
+        topology_ = any_topology(bits_);
+        const std::uint32_t resources = 3 + bits_.below(6);
         for (std::uint32_t i = 0; i < resources; ++i) {
             make_resource("r" + std::to_string(i));
         }
-        if (below(2) == 0) {
+        if (bits_.below(2) == 0) {
             make_history();
         }
-        const std::uint32_t passes = 2 + below(14);
+        const std::uint32_t passes = 2 + bits_.below(14);
         for (std::uint32_t i = 0; i < passes; ++i) {
-            if (!snapshots_.empty() && below(6) == 0) {
+            if (bits_.below(12) == 0) {
+                make_variant(i);
+            } else if (!snapshots_.empty() && bits_.below(6) == 0) {
                 make_late_reader(i);
             } else {
                 make_pass("p" + std::to_string(i));
             }
         }
         GraphDesc graph = graph_.finish().desc;
-        Costs costs = random_costs(static_cast<std::uint32_t>(bits_()), graph.passes.size(), below(4) != 0);
+        Costs costs = random_costs(bits_.any(), graph.passes.size(), bits_.below(4) != 0);
         return {std::move(graph), topology_, std::move(costs)};
     }
 
 private:
-    // Only the generator's raw bits are used: distributions differ between standard libraries.
-    std::uint32_t below(std::uint32_t limit) { return static_cast<std::uint32_t>(bits_() % limit); }
-    template <typename T>
-    T one_of(std::initializer_list<T> values) {
-        return values.begin()[below(static_cast<std::uint32_t>(values.size()))];
-    }
-
-    void make_topology() {
-        constexpr std::uint8_t all = can_graphics | can_compute | can_transfer;
-        topology_.queues = {{QueueKind::graphics, 0, all}};
-        const std::uint32_t shape = below(6);
-        if (shape == 1 || shape >= 3) {
-            const std::uint32_t family = below(3) == 0 ? 0 : 1;
-            const std::uint8_t can = family == 0 ? all : std::uint8_t{can_compute | can_transfer};
-            topology_.queues.push_back({QueueKind::compute, family, can});
-        }
-        if (shape >= 2 && shape != 4) {
-            topology_.queues.push_back({QueueKind::transfer, 2, can_transfer});
-        }
-    }
-
-    std::uint32_t any_family() { return topology_.queues[below(queue_count())].family; }
-    [[nodiscard]] std::uint32_t queue_count() const { return static_cast<std::uint32_t>(topology_.queues.size()); }
-
-    ImageDesc image_desc() {
-        ImageDesc desc{.format = one_of({VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM,
-                                         VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT_S8_UINT}),
-                       .extent = {16, 16, 1}};
-        switch (below(4)) {
-        case 0: desc.mips = 1 + below(4); break;
-        case 1: desc.layers = 1 + below(4); break;
-        case 2:
-            desc.mips = 1 + below(3);
-            desc.layers = 1 + below(3);
-            break;
-        default:
-            if (!is_depth_or_stencil(desc.format)) {
-                desc.extent = {32, 16, 1 + below(8)};
-                desc.type = VK_IMAGE_TYPE_3D;
-            }
-        }
-        return desc;
-    }
-
-    /// What a queue that may be the first to use an import can name as the host's last use.
-    VkPipelineStageFlags2 host_stages() {
-        return queue_count() == 1
-                   ? one_of({VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT})
-                   : one_of({VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT});
-    }
-
-    ImportDesc import_desc(bool image) {
-        ImportDesc import;
-        const bool writes_before = below(2) == 0;
-        import.waits_semaphore = below(3) == 0;
-        if (!import.waits_semaphore && below(3) != 0) {
-            import.initial_stages = host_stages();
-            import.initial_access = writes_before ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_MEMORY_READ_BIT;
-        }
-        if (image && below(3) != 0) {
-            import.initial_layout = one_of({VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR});
-        }
-        const bool has_content = !image || import.initial_layout != VK_IMAGE_LAYOUT_UNDEFINED;
-        if (has_content && below(3) == 0) {
-            import.initial_family = any_family();
-        }
-        import.read_only = has_content && below(4) == 0;
-        import.has_final = !import.read_only;
-        if (import.has_final || below(2) == 0) {
-            import.has_final = true;
-            import.final_layout = !image
-                                      ? VK_IMAGE_LAYOUT_UNDEFINED
-                                      : one_of({VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                                VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
-            import.signals_semaphore = below(3) == 0;
-            if (!import.signals_semaphore) {
-                import.final_stages = one_of(
-                    {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_PIPELINE_STAGE_2_HOST_BIT, VkPipelineStageFlags2{0}});
-                import.final_access = import.final_stages == VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT
-                                          ? one_of({VK_ACCESS_2_TRANSFER_READ_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT})
-                                      : import.final_stages != 0 ? VK_ACCESS_2_HOST_READ_BIT
-                                                                 : VkAccessFlags2{0};
-            }
-            if (below(4) == 0) {
-                import.final_family = any_family();
-            }
-        }
-        return import;
-    }
-
     void make_resource(const std::string& name) {
         Known known;
         bool has_content = false;
-        if (below(3) == 0) {
-            known.size_bytes = 64ULL * buffer_parts * (1 + below(40));
+        if (bits_.below(3) == 0) {
+            known.size_bytes = 64ULL * buffer_parts * (1 + bits_.below(40));
             known.parts_a = buffer_parts;
-            if (below(3) == 0) {
-                const ImportDesc import = import_desc(false);
+            if (bits_.below(3) == 0) {
+                const ImportDesc import = any_import(bits_, topology_, false);
                 known.buffer = graph_.import_buffer(name, {.size_bytes = known.size_bytes}, import);
                 known.writable = !import.read_only;
                 known.is_import = true;
@@ -184,11 +95,11 @@ private:
                 known.buffer = graph_.create_buffer(name, {.size_bytes = known.size_bytes});
             }
         } else {
-            known.image_desc = image_desc();
+            known.image_desc = any_image(bits_);
             known.parts_a = known.image_desc.mips;
             known.parts_b = known.image_desc.layers;
-            if (below(4) == 0) {
-                const ImportDesc import = import_desc(true);
+            if (bits_.below(4) == 0) {
+                const ImportDesc import = any_import(bits_, topology_, true);
                 known.image = graph_.import_image(name, known.image_desc, import);
                 known.writable = !import.read_only;
                 known.is_import = true;
@@ -199,7 +110,7 @@ private:
             }
         }
         known.written.assign(std::size_t{known.parts_a} * known.parts_b, has_content);
-        if (below(5) == 0) {
+        if (bits_.below(5) == 0) {
             known.is_image() ? graph_.share_between_queues(known.image) : graph_.share_between_queues(known.buffer);
         }
         known_.push_back(std::move(known));
@@ -223,7 +134,7 @@ private:
                 previous.buffer = graph_.history_of(current.buffer);
                 pass.writes(current.buffer, Access::storage_compute);
             }
-            pass.on_queue(one_of({QueueWish::async_compute, QueueWish::automatic}));
+            pass.on_queue(bits_.one_of({QueueWish::async_compute, QueueWish::automatic}));
             current.written.assign(current.written.size(), true);
             previous.written.assign(previous.written.size(), true);
             known_.push_back(std::move(previous));
@@ -239,11 +150,11 @@ private:
     bool pick_box(std::size_t index, bool whole, Box& box) {
         const Known& known = known_[index];
         box = {0, known.parts_a, 0, known.parts_b};
-        if (!whole && below(2) == 0) {
-            box.first_a = below(known.parts_a);
-            box.end_a = box.first_a + 1 + below(known.parts_a - box.first_a);
-            box.first_b = below(known.parts_b);
-            box.end_b = box.first_b + 1 + below(known.parts_b - box.first_b);
+        if (!whole && bits_.below(2) == 0) {
+            box.first_a = bits_.below(known.parts_a);
+            box.end_a = box.first_a + 1 + bits_.below(known.parts_a - box.first_a);
+            box.first_b = bits_.below(known.parts_b);
+            box.end_b = box.first_b + 1 + bits_.below(known.parts_b - box.first_b);
         }
         return std::none_of(used_.begin(), used_.end(),
                             [&](const Using& use) { return use.known == index && use.box.meets(box); });
@@ -290,7 +201,7 @@ private:
             case Direction::modify: pass.modifies(known.image, access, range); break;
             case Direction::replace:
                 ImageUse use{.range = range};
-                if (access == Access::color_attachment && below(2) == 0) {
+                if (access == Access::color_attachment && bits_.below(2) == 0) {
                     use.clear = clear_color(0, 0, 0, 0);
                 }
                 pass.writes(known.image, access, use);
@@ -322,7 +233,7 @@ private:
         if (accesses.empty()) {
             return false;
         }
-        const Access access = accesses[below(static_cast<std::uint32_t>(accesses.size()))];
+        const Access access = accesses[bits_.below(static_cast<std::uint32_t>(accesses.size()))];
         Box box;
         if (!pick_box(index, false, box)) {
             return false;
@@ -337,7 +248,7 @@ private:
         }
         Direction direction = Direction::read;
         if (writes) {
-            direction = known.is_written(box) && below(2) == 0 && access != Access::resolve_attachment
+            direction = known.is_written(box) && bits_.below(2) == 0 && access != Access::resolve_attachment
                             ? Direction::modify
                             : Direction::replace;
         } else if (!known.is_written(box)) {
@@ -345,7 +256,7 @@ private:
         }
         const bool first_use =
             std::none_of(used_.begin(), used_.end(), [&](const Using& u) { return u.known == index; });
-        if (writes && first_use && kind != PassKind::host && below(4) == 0 && known.is_written(box)) {
+        if (writes && first_use && kind != PassKind::host && bits_.below(4) == 0 && known.is_written(box)) {
             snapshots_.push_back(known); // a later pass may ask for what this write overwrites
         }
         declare(pass, known, access, direction, box);
@@ -354,61 +265,77 @@ private:
         return true;
     }
 
-    PassKind any_kind() {
-        switch (below(10)) {
-        case 0: return PassKind::transfer;
-        case 1: return below(3) == 0 ? PassKind::host : PassKind::transfer;
-        case 2:
-        case 3:
-        case 4: return PassKind::graphics;
-        default: return PassKind::compute;
-        }
-    }
-
-    QueueWish any_wish(PassKind kind) {
-        switch (kind) {
-        case PassKind::graphics: return one_of({QueueWish::automatic, QueueWish::graphics});
-        case PassKind::compute:
-            return one_of(
-                {QueueWish::automatic, QueueWish::graphics, QueueWish::async_compute, QueueWish::async_compute});
-        case PassKind::transfer:
-            return one_of({QueueWish::automatic, QueueWish::async_compute, QueueWish::transfer, QueueWish::transfer});
-        case PassKind::host: break;
-        }
-        return QueueWish::automatic;
-    }
-
     void make_pass(const std::string& name) {
-        const PassKind kind = any_kind();
+        const PassKind kind = any_kind(bits_);
         PassBuilder pass = graph_.add_pass(name, kind);
-        pass.on_queue(any_wish(kind));
+        pass.on_queue(any_wish(bits_, kind));
         used_.clear();
-        for (std::uint32_t reads = below(4); reads > 0; --reads) {
-            try_access(pass, kind, below(static_cast<std::uint32_t>(known_.size())), false);
+        for (std::uint32_t reads = bits_.below(4); reads > 0; --reads) {
+            try_access(pass, kind, bits_.below(static_cast<std::uint32_t>(known_.size())), false);
         }
         const std::size_t before = used_.size();
-        const std::uint32_t writes = 1 + below(2);
+        const std::uint32_t writes = 1 + bits_.below(2);
         for (std::uint32_t attempt = 0; attempt < 6 && used_.size() < before + writes; ++attempt) {
-            try_access(pass, kind, below(static_cast<std::uint32_t>(known_.size())), true);
+            try_access(pass, kind, bits_.below(static_cast<std::uint32_t>(known_.size())), true);
         }
-        if (used_.size() == before || below(8) == 0) {
+        if (used_.size() == before || bits_.below(8) == 0) {
             pass.has_side_effect("random");
         }
     }
 
+    /// Two forms that give the same resource new content, the second maybe by doing nothing.
+    void make_variant(std::uint32_t index) {
+        const std::size_t chosen = bits_.below(static_cast<std::uint32_t>(known_.size()));
+        if (!known_[chosen].writable || possible(PassKind::compute, known_[chosen], true).empty()) {
+            return;
+        }
+        const Known before = known_[chosen];
+        const std::string name = std::to_string(index);
+        const std::uint32_t variant = graph_.add_variant("variant " + name);
+        std::vector<Known> after;
+        for (const char* form : {"a", "b"}) {
+            graph_.begin_form(variant, form);
+            known_[chosen] = before;
+            const std::uint32_t passes = after.empty() ? 1 + bits_.below(2) : bits_.below(3);
+            for (std::uint32_t i = 0; i < passes; ++i) {
+                PassBuilder pass = graph_.add_pass("form " + name + form + std::to_string(i), PassKind::compute);
+                pass.on_queue(any_wish(bits_, PassKind::compute));
+                used_.clear();
+                if (!try_access(pass, PassKind::compute, chosen, true)) {
+                    pass.has_side_effect("random");
+                }
+            }
+            after.push_back(known_[chosen]);
+        }
+        graph_.end_form();
+        Known& known = known_[chosen];
+        if (known.is_image()) {
+            known.image = either(after[0].image, after[1].image);
+        } else {
+            known.buffer = either(after[0].buffer, after[1].buffer);
+        }
+        for (std::size_t part = 0; part < known.written.size(); ++part) {
+            known.written[part] = after[0].written[part] && after[1].written[part];
+        }
+        std::erase_if(snapshots_, [&](const Known& past) { // what one form overwrites, the other may not
+            return past.image.resource == known.image.resource && past.buffer.resource == known.buffer.resource;
+        });
+    }
+
     /// Reads a version that another pass has overwritten since, and touches nothing else: so it can run before that.
     void make_late_reader(std::uint32_t index) {
-        Known& past = snapshots_[below(static_cast<std::uint32_t>(snapshots_.size()))];
+        Known& past = snapshots_[bits_.below(static_cast<std::uint32_t>(snapshots_.size()))];
         const std::vector<Access> accesses = possible(PassKind::compute, past, false);
         const Box box{0, past.parts_a, 0, past.parts_b};
         PassBuilder pass = graph_.add_pass("late " + std::to_string(index), PassKind::compute);
-        pass.has_side_effect("reads an old version").on_queue(any_wish(PassKind::compute));
+        pass.has_side_effect("reads an old version").on_queue(any_wish(bits_, PassKind::compute));
         if (!accesses.empty() && past.is_written(box)) {
-            declare(pass, past, accesses[below(static_cast<std::uint32_t>(accesses.size()))], Direction::read, box);
+            declare(pass, past, accesses[bits_.below(static_cast<std::uint32_t>(accesses.size()))], Direction::read,
+                    box);
         }
     }
 
-    std::mt19937 bits_;
+    Bits bits_;
     QueueTopology topology_;
     GraphBuilder graph_;
     std::vector<Known> known_;

@@ -127,7 +127,7 @@ class CpuExecutor {
 public:
     CpuExecutor(const GraphDesc& graph, const Plan& plan, Values values)
         : graph_(graph), plan_(plan), values_(values), estimate_(estimate_memory(graph)),
-          reference_(graph, estimate_, values), commands_(recorded_commands(graph, plan)),
+          reference_(graph, plan.variants, estimate_, values), commands_(recorded_commands(graph, plan)),
           signals_(plan.batches.size()), sums_(graph.passes.size()) {}
 
     CpuRun run() {

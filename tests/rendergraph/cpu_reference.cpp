@@ -52,7 +52,8 @@ std::vector<std::uint32_t> cells_of(const ResourceDesc& resource, std::uint32_t 
     return cells;
 }
 
-Reference::Reference(const GraphDesc& graph, const MemoryRequirements& estimate, Values values)
+Reference::Reference(const GraphDesc& graph, const std::vector<VariantDecision>& forms,
+                     const MemoryRequirements& estimate, Values values)
     : graph_(graph), estimate_(estimate), values_(values), inputs_(graph.passes.size(), 0),
       known_(graph.passes.size(), false) {
     for (std::uint32_t r = 0; r < graph.resources.size(); ++r) {
@@ -60,7 +61,9 @@ Reference::Reference(const GraphDesc& graph, const MemoryRequirements& estimate,
     }
     std::vector<std::uint32_t> writes;
     for (std::uint32_t i = 0; i < graph.accesses.size(); ++i) {
-        if (is_write(graph.accesses[i].direction)) {
+        const PassDesc& pass = graph.passes[graph.accesses[i].pass];
+        const bool exists = pass.variant == none || forms[pass.variant].form == pass.form;
+        if (exists && is_write(graph.accesses[i].direction)) {
             writes.push_back(i);
         }
     }

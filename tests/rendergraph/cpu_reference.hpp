@@ -29,7 +29,9 @@ inline constexpr VkDeviceSize cell_bytes = 64;
 
 class Reference {
 public:
-    Reference(const GraphDesc& graph, const MemoryRequirements& estimate, Values values);
+    /// Of the plan it knows the forms that are kept, and nothing else.
+    Reference(const GraphDesc& graph, const std::vector<VariantDecision>& forms, const MemoryRequirements& estimate,
+              Values values);
 
     /// Content of the cell after the write that made `version`, or the last one before; also of culled passes.
     [[nodiscard]] std::uint64_t value(std::uint32_t resource, std::uint32_t cell, std::uint32_t version);

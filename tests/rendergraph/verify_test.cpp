@@ -3,6 +3,7 @@
 
 #include "tests/rendergraph/any_frame.hpp"
 #include "tests/rendergraph/frames.hpp"
+#include "tests/rendergraph/shrink.hpp"
 
 namespace tyndall::rg::test {
 namespace {
@@ -29,8 +30,8 @@ TEST(Verify, RandomFramesAreProved) {
     for (std::uint32_t seed = 1; seed <= count; ++seed) {
         const AnyFrame frame = any_frame(seed);
         const auto plan = plan_of(frame);
-        ASSERT_TRUE(plan.has_value()) << "seed " << seed << "\n" << to_text(plan.error());
-        ASSERT_EQ(text(verify(frame.graph, *plan)), "") << "seed " << seed << "\n" << to_text(frame.graph, *plan);
+        ASSERT_TRUE(plan.has_value()) << "seed " << seed << "\n" << to_text(plan.error()) << small_failure(frame);
+        ASSERT_EQ(text(verify(frame.graph, *plan)), "") << "seed " << seed << "\n" << small_failure(frame);
         planned += static_cast<std::uint32_t>(plan->passes.size());
     }
     std::printf("seeds 1 to %u: %u passes planned, no violation\n", count, planned);
