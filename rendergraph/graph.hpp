@@ -166,7 +166,10 @@ public:
     /// handles, so each needs its own copies.
     [[nodiscard]] std::uint32_t add_variant(std::string_view name, Where where = Where::current());
     void begin_form(std::uint32_t variant, std::string_view form);
-    void end_form() { variant_ = none; }
+    void end_form() {
+        variant_ = none;
+        form_ = 0;
+    }
 
     [[nodiscard]] const ImageDesc* describe(Image image) const;
     [[nodiscard]] const BufferDesc* describe(Buffer buffer) const;
