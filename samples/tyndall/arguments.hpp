@@ -37,6 +37,8 @@ struct RenderArguments {
     std::optional<std::filesystem::path> explain_file;
     bool explain = false;
     std::optional<std::filesystem::path> timing_file;
+    std::optional<std::filesystem::path> trace;        ///< predicted and measured timeline
+    std::optional<std::filesystem::path> export_frame; ///< the frame as JSON, with the durations that were measured
     bool timing = false;
     std::optional<std::filesystem::path> stages_dir;
     std::string device;
@@ -54,7 +56,7 @@ struct InfoArguments {
 
 struct ScheduleArguments {
     std::filesystem::path frame;
-    std::optional<std::string> queues; ///< "graphics", "graphics,compute" or "graphics,compute,transfer"
+    std::optional<std::string> queues; ///< "graphics", "graphics,compute" or "graphics,compute:0,transfer"
     std::optional<std::filesystem::path> costs;
     std::optional<std::filesystem::path> plan; ///< explained and verified instead of one that is compiled
     std::vector<std::string> switches;

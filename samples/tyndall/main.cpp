@@ -19,7 +19,8 @@ int bad_input(const std::string& sentence) {
 
 void add_schedule_options(CLI::App& command, ScheduleArguments& schedule) {
     command.add_option("frame", schedule.frame, "frame description (docs/frame.md)")->required();
-    command.add_option("--queues", schedule.queues, "graphics[,compute[,transfer]]; without it, the frame's own");
+    command.add_option("--queues", schedule.queues,
+                       "graphics[,compute[,transfer]], each with :FAMILY if need be; without it, the frame's own");
     command.add_option("--costs", schedule.costs, "durations of passes; without it, the frame's own");
     command.add_option("--plan", schedule.plan, "a plan that --out FILE.json wrote: explained instead of a new one");
     command.add_option("--switch", schedule.switches, "turn one thing off; may be given several times")
@@ -67,6 +68,10 @@ int run(int argc, char** argv) {
     render_command->add_option("--explain-file", render.explain_file, "write that table to a file");
     render_command->add_flag("--timing", render.timing, "print milliseconds of each pass, median over the frames");
     render_command->add_option("--timing-file", render.timing_file, "write that table to a file");
+    render_command->add_option("--export-frame", render.export_frame,
+                               "write the frame and its measured durations as JSON, for tyndall schedule");
+    render_command->add_option("--trace", render.trace,
+                               "write the predicted and the measured timeline, for Perfetto or chrome://tracing");
     render_command->add_option("--dump-stages", render.stages_dir, "write a picture of each intermediate to a folder");
     render_command->add_option("--device", render.device, "part of a device's name, or its index; see tyndall info");
     render_command->add_option("--queues", queues, "queues that the plan is made for: one or two")

@@ -8,6 +8,8 @@
 #include "engine/gltf.hpp"
 #include "engine/particles_json.hpp"
 #include "rendergraph/explain.hpp"
+#include "rendergraph/json.hpp"
+#include "rendergraph/report.hpp"
 #include "samples/tyndall/arguments.hpp"
 #include "samples/tyndall/frame_loop.hpp"
 #include "samples/tyndall/progress.hpp"
@@ -52,6 +54,12 @@ Expected<void> check_arguments(const RenderArguments& arguments) {
     }
     if (arguments.timing_file) {
         files.push_back(*arguments.timing_file);
+    }
+    if (arguments.export_frame) {
+        files.push_back(*arguments.export_frame);
+    }
+    if (arguments.trace) {
+        files.push_back(*arguments.trace);
     }
     // Better now than after minutes of work.
     for (const std::filesystem::path& path : files) {
@@ -179,6 +187,49 @@ Expected<void> dump_stages(const engine::Device& device, FrameLoop& loop, FrameW
     return {};
 }
 
+/// The newest frame as it was declared, each pass with its median duration.
+rg::Frame exported_frame(const RenderArguments& arguments, const FrameLoop& loop, const Timings& timings,
+                         const std::string& device) {
+    constexpr double ns_per_ms = 1e6;
+    rg::Frame frame;
+    frame.about = "Frame of " + arguments.scene.filename().string() + " at " + std::to_string(arguments.size.width) +
+                  "x" + std::to_string(arguments.size.height) + ", durations measured on " + device + ", median of " +
+                  std::to_string(timings.frame_count()) + " frames";
+    frame.graph = loop.graph();
+    frame.topology = loop.plan().topology;
+    frame.costs.of_pass.resize(frame.graph.passes.size());
+    for (const Timings::Row& row : timings.rows()) {
+        if (row.index < frame.costs.of_pass.size()) {
+            frame.costs.of_pass[row.index].mean_ns = std::llround(row.median_ms * ns_per_ms);
+        }
+    }
+    return frame;
+}
+
+/// What the model predicts from the measured durations, and what the newest frame took.
+std::string predicted_and_measured(const rg::Frame& frame, const FrameLoop& loop) {
+    constexpr double ns_per_ms = 1e6;
+    std::vector<rg::TimelinePass> measured;
+    for (const rg::PassTiming& timing : loop.timings()) {
+        const auto planned = std::find_if(loop.plan().passes.begin(), loop.plan().passes.end(),
+                                          [&](const rg::PlannedPass& pass) { return pass.pass == timing.pass; });
+        if (planned != loop.plan().passes.end()) {
+            measured.push_back({timing.pass, planned->queue, std::llround(timing.start_ms * ns_per_ms),
+                                std::llround((timing.start_ms + timing.duration_ms) * ns_per_ms)});
+        }
+    }
+    return rg::to_trace(frame.graph, loop.plan(), rg::simulate(frame.graph, loop.plan(), frame.costs), measured);
+}
+
+Expected<void> write_frame(const RenderArguments& arguments, const rg::Frame& frame, const FrameLoop& loop) {
+    if (arguments.export_frame) {
+        if (Expected<void> written = write_text(*arguments.export_frame, rg::frame_to_json(frame)); !written) {
+            return written;
+        }
+    }
+    return arguments.trace ? write_text(*arguments.trace, predicted_and_measured(frame, loop)) : Expected<void>{};
+}
+
 Expected<void> render_frames(const RenderArguments& arguments, const engine::Device& device, FrameLoop& loop,
                              FrameWishes wishes, Progress& progress) {
     Timings timings;
@@ -218,6 +269,10 @@ Expected<void> render_frames(const RenderArguments& arguments, const engine::Dev
         if (Expected<void> written = write_text(*arguments.timing_file, timing_text); !written) {
             return written;
         }
+    }
+    if (Expected<void> written = write_frame(arguments, exported_frame(arguments, loop, timings, device_text), loop);
+        !written) {
+        return written;
     }
     if (arguments.explain) {
         std::fputs(explain_text.c_str(), stdout);
@@ -274,8 +329,8 @@ Expected<void> render(const RenderArguments& arguments) {
     info.fog = *fog;
     info.emitters = std::move(*emitters);
     info.two_queues = arguments.queues == Queues::two;
-    info.profile =
-        arguments.timing || arguments.timing_file || arguments.explain || arguments.explain_file || arguments.json;
+    info.profile = arguments.timing || arguments.timing_file || arguments.explain || arguments.explain_file ||
+                   arguments.json || arguments.export_frame;
     info.renderer.exposure.ev100 = arguments.exposure_ev100;
     const bool exr = std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
                                  [](const auto& path) { return path.extension() == ".exr"; });

@@ -1,5 +1,6 @@
 // tyndall schedule: a frame in a file, its plan explained. Nothing here touches a device.
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -68,6 +69,30 @@ constexpr Switch compile_switches[] = {
 /// Filling transients with garbage is a switch of the executor: a plan is the same with it.
 constexpr const char* poison_switch = "poison";
 
+/// "compute", or "compute:2" for family 2. A queue of the graphics queue's family can do all that this one can.
+std::optional<rg::QueueInfo> parse_queue(std::string_view text, rg::QueueKind kind, const rg::QueueTopology& own,
+                                         const rg::QueueTopology& so_far) {
+    const std::size_t colon = text.find(':');
+    if (text.substr(0, colon) != rg::name_of(kind)) {
+        return std::nullopt;
+    }
+    const auto declared = std::find_if(own.queues.begin(), own.queues.end(),
+                                       [&](const rg::QueueInfo& queue) { return queue.kind == kind; });
+    rg::QueueInfo queue = declared == own.queues.end() ? rg::usual_queue(kind) : *declared;
+    if (colon == std::string_view::npos) {
+        return queue;
+    }
+    const std::string_view digits = text.substr(colon + 1);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), queue.family);
+    if (error != std::errc{} || end != digits.data() + digits.size()) {
+        return std::nullopt;
+    }
+    if (!so_far.queues.empty() && so_far.queues.front().family == queue.family) {
+        queue.capabilities = so_far.queues.front().capabilities;
+    }
+    return queue;
+}
+
 Expected<rg::QueueTopology> topology_of(const ScheduleArguments& arguments, const rg::QueueTopology& own) {
     if (!arguments.queues) {
         return own;
@@ -75,15 +100,19 @@ Expected<rg::QueueTopology> topology_of(const ScheduleArguments& arguments, cons
     constexpr rg::QueueKind kinds[] = {rg::QueueKind::graphics, rg::QueueKind::compute, rg::QueueKind::transfer};
     rg::QueueTopology topology{{}};
     std::stringstream list(*arguments.queues);
-    for (std::string name; std::getline(list, name, ',');) {
+    for (std::string text; std::getline(list, text, ',');) {
         const std::size_t at = topology.queues.size();
-        if (at >= std::size(kinds) || name != rg::name_of(kinds[at])) {
-            return mistake("--queues must be graphics, graphics,compute or graphics,compute,transfer, not '" +
+        const std::optional<rg::QueueInfo> queue =
+            at < std::size(kinds) ? parse_queue(text, kinds[at], own, topology) : std::nullopt;
+        if (!queue) {
+            return mistake("--queues must be graphics, graphics,compute or graphics,compute,transfer, each with "
+                           ":FAMILY if need be, not '" +
                            *arguments.queues + "'");
         }
-        const auto declared = std::find_if(own.queues.begin(), own.queues.end(),
-                                           [&](const rg::QueueInfo& queue) { return queue.kind == kinds[at]; });
-        topology.queues.push_back(declared == own.queues.end() ? rg::usual_queue(kinds[at]) : *declared);
+        topology.queues.push_back(*queue);
+    }
+    if (topology.queues.empty()) {
+        return mistake("--queues must name at least graphics");
     }
     return topology;
 }
@@ -112,6 +141,8 @@ Expected<rg::Frame> load_frame(const ScheduleArguments& arguments) {
             return mistakes_in(*arguments.costs, costs.error());
         }
         frame->costs = costs->costs;
+        // The durations are no longer those that the frame speaks of.
+        frame->about += (frame->about.empty() ? "" : ". ") + std::string("Here with other durations: ") + costs->about;
         for (const std::string& name : costs->without_pass) {
             std::fprintf(stderr, "note: the costs of '%s' are not used, the frame has no such pass\n", name.c_str());
         }
@@ -178,7 +209,7 @@ Expected<void> write_outputs(const ScheduleArguments& arguments, const rg::Frame
                                  : kind == ".dot"  ? rg::to_dot(frame.graph, plan)
                                                    : rg::to_html(arguments.frame.stem().string(), frame.about,
                                                                  frame.graph, plan, frame.costs);
-        if (const Expected<void> written = write_text(path, text); !written) {
+        if (Expected<void> written = write_text(path, text); !written) {
             return written;
         }
     }
@@ -200,10 +231,10 @@ int print_violations(const rg::Frame& frame, const rg::Plan& plan) {
 }
 
 Expected<int> schedule(const ScheduleArguments& arguments) {
-    if (const Expected<void> checked = check_outputs(arguments); !checked) {
+    if (Expected<void> checked = check_outputs(arguments); !checked) {
         return tl::unexpected(checked.error());
     }
-    const Expected<rg::Frame> frame = load_frame(arguments);
+    Expected<rg::Frame> frame = load_frame(arguments);
     if (!frame) {
         return tl::unexpected(frame.error());
     }
@@ -214,7 +245,7 @@ Expected<int> schedule(const ScheduleArguments& arguments) {
     const rg::Timeline timeline = rg::simulate(frame->graph, *plan, frame->costs);
     const std::string report = rg::explain_table(frame->graph, *plan, durations_of(timeline)) +
                                rg::to_text(rg::optimality(frame->graph, *plan, timeline));
-    if (const Expected<void> written = write_outputs(arguments, *frame, *plan, timeline, report); !written) {
+    if (Expected<void> written = write_outputs(arguments, *frame, *plan, timeline, report); !written) {
         return tl::unexpected(written.error());
     }
     std::fputs((arguments.json ? rg::plan_to_json(frame->graph, *plan) : report).c_str(), stdout);
