@@ -254,6 +254,10 @@ Expected<void> render_frames(const RenderArguments& arguments, const engine::Dev
     const std::string device_text = device.info().name + ", " + device.info().driver;
     const std::string timing_text = arguments.json ? timings.json(device_text) + "\n" : timings.table(device_text);
     const std::string explain_text = explain(loop, timings);
+    if (Expected<void> written = write_frame(arguments, exported_frame(arguments, loop, timings, device_text), loop);
+        !written) {
+        return written;
+    }
     if (arguments.stages_dir) {
         progress.show("stages");
         if (Expected<void> dumped = dump_stages(device, loop, wishes, *arguments.stages_dir); !dumped) {
@@ -269,10 +273,6 @@ Expected<void> render_frames(const RenderArguments& arguments, const engine::Dev
         if (Expected<void> written = write_text(*arguments.timing_file, timing_text); !written) {
             return written;
         }
-    }
-    if (Expected<void> written = write_frame(arguments, exported_frame(arguments, loop, timings, device_text), loop);
-        !written) {
-        return written;
     }
     if (arguments.explain) {
         std::fputs(explain_text.c_str(), stdout);
