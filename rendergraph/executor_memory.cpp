@@ -150,7 +150,8 @@ ObjectKey ExecutorState::key_of(std::uint32_t resource) const {
             key.queues |= queues[work.real_of[q]].family_bit;
         }
     }
-    if (std::popcount(key.queues) < 2) {
+    // One family owns it. The next plan's may be another: then a new history begins, since nobody releases the old one.
+    if (std::popcount(key.queues) < 2 && placement.kind != PlacementKind::history) {
         key.queues = 0;
     }
     return key;

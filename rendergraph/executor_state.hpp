@@ -42,7 +42,7 @@ struct ObjectKey {
     ImageDesc image;
     VkDeviceSize size_bytes = 0;
     VkFlags usage = 0;
-    std::uint32_t queues = 0; ///< real queues, as bits, that share it concurrently; 0: exclusive
+    std::uint32_t queues = 0; ///< families, as bits, that share it, or that own a history; 0: exclusive
 };
 [[nodiscard]] bool same_key(const ObjectKey& a, const ObjectKey& b);
 

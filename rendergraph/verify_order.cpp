@@ -38,15 +38,26 @@ constexpr std::array stage_numbers = {
     StageNumber{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, every_stage & ~host_stage},
 };
 
+constexpr StageSet all_others = 1U << 16U;
+
+/// The stages of each bit of a mask.
+constexpr std::array<StageSet, 64> stages_of_bit = [] {
+    std::array<StageSet, 64> out = {};
+    for (std::size_t bit = 0; bit < out.size(); ++bit) {
+        for (const StageNumber& number : stage_numbers) {
+            out[bit] |= (number.mask >> bit & 1U) != 0 ? number.stages : 0;
+        }
+        out[bit] = out[bit] != 0 ? out[bit] : all_others;
+    }
+    return out;
+}();
+
 StageSet numbered(VkPipelineStageFlags2 mask) {
     StageSet out = 0;
-    VkPipelineStageFlags2 left = mask;
-    for (const StageNumber& number : stage_numbers) {
-        out |= (mask & number.mask) != 0 ? number.stages : 0;
-        left &= ~number.mask;
+    for (; mask != 0; mask &= mask - 1) {
+        out |= stages_of_bit[static_cast<std::size_t>(std::countr_zero(mask))];
     }
-    constexpr StageSet all_others = 1U << 16U;
-    return left != 0 ? out | all_others : out;
+    return out;
 }
 
 void raise(std::uint32_t* to, const std::uint32_t* from, std::size_t count) {

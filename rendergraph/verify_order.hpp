@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -82,10 +83,8 @@ private:
 /// Calls `f(number)` for each stage of the set.
 template <typename F>
 void for_each_stage(StageSet stages, F&& f) {
-    for (std::uint32_t s = 0; stages != 0; ++s, stages >>= 1U) {
-        if ((stages & 1U) != 0) {
-            f(s);
-        }
+    for (; stages != 0; stages &= stages - 1) {
+        f(static_cast<std::uint32_t>(std::countr_zero(stages)));
     }
 }
 

@@ -81,14 +81,14 @@ void Replay::begin_batch(std::uint32_t index) {
 void Replay::end_batch(std::uint32_t index) {
     const Batch& batch = plan_.batches[index];
     const std::uint8_t can = plan_.topology.queues[batch.queue].capabilities;
-    std::vector<Effect> effects;
+    effects_.clear();
     for (const std::uint32_t d : batch.releases) {
-        effects.push_back(*effect_of(plan_.dependencies[d], Recorded::at_batch_end, can));
+        effects_.push_back(*effect_of(plan_.dependencies[d], Recorded::at_batch_end, can));
     }
     for (const std::uint32_t d : exits_after_[index]) {
-        effects.push_back(*effect_of(plan_.dependencies[d], Recorded::at_exit, can));
+        effects_.push_back(*effect_of(plan_.dependencies[d], Recorded::at_exit, can));
     }
-    barriers(batch.queue, effects, none);
+    barriers(batch.queue, none);
     if (batch.signals || !batch.signals_imports.empty()) {
         signals_[index] = order_.signal(batch.queue);
     }
@@ -112,13 +112,13 @@ void Replay::pass(const PlannedPass& planned, std::uint32_t queue) {
         report(ViolationCode::queue_cannot, planned.pass, none, none,
                "pass " + pass_name(planned.pass) + " is on a queue that cannot run it");
     }
-    std::vector<Effect> effects;
+    effects_.clear();
     for (std::uint32_t d = planned.first_barrier; d < planned.first_barrier + planned.barrier_count; ++d) {
         if (const std::optional<Effect> effect = effect_of(plan_.dependencies[d], Recorded::before_consumer, can)) {
-            effects.push_back(*effect);
+            effects_.push_back(*effect);
         }
     }
-    barriers(queue, effects, planned.pass);
+    barriers(queue, planned.pass);
     const std::uint32_t sequence = order_.begin_command(queue);
     const auto for_accesses = [&](auto&& f) {
         for (std::uint32_t i = desc.first_access; i < desc.first_access + desc.access_count; ++i) {
@@ -149,42 +149,52 @@ const AttachmentOps* Replay::operations_of(const PlannedPass& planned, std::uint
     return nullptr;
 }
 
+SourceScope& Replay::new_scope(StageSet stages) {
+    if (scope_count_ == scopes_.size()) {
+        scopes_.emplace_back();
+    }
+    scopes_[scope_count_].first = stages;
+    return scopes_[scope_count_++].second;
+}
+const SourceScope* Replay::scope_of(const Effect& effect) const {
+    const StageSet stages = source_stages(effect.src);
+    const auto end = scopes_.begin() + static_cast<std::ptrdiff_t>(scope_count_);
+    const auto found = std::find_if(scopes_.begin(), end, [&](const auto& scope) { return scope.first == stages; });
+    return found == end ? nullptr : &found->second;
+}
+
 /// All of one vkCmdPipelineBarrier2: none of them comes after another.
-void Replay::barriers(std::uint32_t queue, std::span<const Effect> effects, std::uint32_t before_pass) {
-    if (effects.empty()) {
+void Replay::barriers(std::uint32_t queue, std::uint32_t before_pass) {
+    if (effects_.empty()) {
         return;
     }
     const std::uint32_t sequence = order_.begin_command(queue);
-    scopes_.clear();
-    for (const Effect& effect : effects) {
+    scope_count_ = 0;
+    for (const Effect& effect : effects_) {
         if (stages_it_lacks(effect.src | effect.dst, plan_.topology.queues[queue].capabilities) != 0) {
             report(ViolationCode::queue_cannot, before_pass, none, effect.d->resource,
                    "a barrier of " + resource_name(effect.d->resource) + " names stages that its queue does not have");
         }
-        const StageSet stages = source_stages(effect.src);
-        if (std::none_of(scopes_.begin(), scopes_.end(), [&](const auto& scope) { return scope.first == stages; })) {
-            order_.source_scope(queue, stages, scopes_.emplace_back(stages, SourceScope{}).second);
+        if (scope_of(effect) == nullptr) {
+            const StageSet stages = source_stages(effect.src);
+            order_.source_scope(queue, stages, new_scope(stages));
         }
     }
-    const auto scope_of = [&](const Effect& effect) -> const SourceScope& {
-        const StageSet stages = source_stages(effect.src);
-        return std::find_if(scopes_.begin(), scopes_.end(), [&](const auto& s) { return s.first == stages; })->second;
-    };
     const auto here = [&](const Effect& effect) {
         return Point{queue, sequence, destination_stages(effect.dst), true};
     };
     // Transitions come after what their source scope names, and before memory becomes visible.
-    for (const Effect& effect : effects) {
-        act(effect, scope_of(effect), queue, before_pass);
+    for (const Effect& effect : effects_) {
+        act(effect, *scope_of(effect), queue, before_pass);
     }
-    for (const Effect& effect : effects) {
-        carry_memory(effect, scope_of(effect), here(effect));
+    for (const Effect& effect : effects_) {
+        carry_memory(effect, *scope_of(effect), here(effect));
     }
-    for (const Effect& effect : effects) {
+    for (const Effect& effect : effects_) {
         record_act(effect, here(effect));
     }
-    for (const Effect& effect : effects) {
-        order_.add_barrier(queue, destination_stages(effect.dst), scope_of(effect));
+    for (const Effect& effect : effects_) {
+        order_.add_barrier(queue, destination_stages(effect.dst), *scope_of(effect));
     }
 }
 

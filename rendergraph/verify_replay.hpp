@@ -34,7 +34,9 @@ private:
     void begin_batch(std::uint32_t index);
     void end_batch(std::uint32_t index);
     void pass(const PlannedPass& planned, std::uint32_t queue);
-    void barriers(std::uint32_t queue, std::span<const Effect> effects, std::uint32_t before_pass);
+    void barriers(std::uint32_t queue, std::uint32_t before_pass);
+    [[nodiscard]] SourceScope& new_scope(StageSet stages);
+    [[nodiscard]] const SourceScope* scope_of(const Effect& effect) const;
     void act(const Effect& effect, const SourceScope& source, std::uint32_t queue, std::uint32_t before_pass);
     void change_owner(const Effect& effect, Atom& atom, std::uint32_t before_pass);
     void carry_memory(const Effect& effect, const SourceScope& source, const Point& here);
@@ -70,9 +72,12 @@ private:
     Memory& memory_;
     std::vector<Violation>& found_;
     std::uint32_t frame_ = 0;
-    std::vector<Clock> signals_;                           ///< by batch
-    std::vector<std::vector<std::uint32_t>> exits_after_;  ///< by batch: dependencies recorded at its end
-    std::vector<std::pair<StageSet, SourceScope>> scopes_; ///< of the barrier command at hand
+    std::vector<Clock> signals_;                          ///< by batch
+    std::vector<std::vector<std::uint32_t>> exits_after_; ///< by batch: dependencies recorded at its end
+    // Of the barrier command at hand; kept for their memory.
+    std::vector<Effect> effects_;
+    std::vector<std::pair<StageSet, SourceScope>> scopes_;
+    std::size_t scope_count_ = 0;
 };
 
 } // namespace tyndall::rg::checker

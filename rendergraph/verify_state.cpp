@@ -137,13 +137,15 @@ void Memory::begin_frame(const GraphDesc& graph, const Plan& plan, Order& order)
         }
     }
     if (last_graph_ != nullptr) {
-        carry_over(graph, *last_graph_, last);
+        carry_over(graph, plan, last);
     }
     last_graph_ = &graph;
+    last_plan_ = &plan;
 }
 
 /// An import's memory is the same in each frame, and the copies of a history swap their roles.
-void Memory::carry_over(const GraphDesc& graph, const GraphDesc& last_graph, const std::vector<std::uint32_t>& last) {
+void Memory::carry_over(const GraphDesc& graph, const Plan& plan, const std::vector<std::uint32_t>& last) {
+    const GraphDesc& last_graph = *last_graph_;
     std::map<std::string_view, std::uint32_t> by_name;
     for (std::uint32_t r = 0; r < last_graph.resources.size(); ++r) {
         by_name.emplace(last_graph.resources[r].name, last[r]);
@@ -165,7 +167,12 @@ void Memory::carry_over(const GraphDesc& graph, const GraphDesc& last_graph, con
             if (before == by_name.end()) {
                 continue;
             }
-            const std::vector<Atom>& left = objects_[before->second].atoms;
+            // Of other families, it would be another object, whose content is known to be worthless.
+            const Object& old = objects_[before->second];
+            if (last_plan_->placements[old.resource].families != plan.placements[r].families) {
+                continue;
+            }
+            const std::vector<Atom>& left = old.atoms;
             const bool one_owner = std::all_of(
                 left.begin(), left.end(), [&](const Atom& a) { return a.owner == left.front().owner && !a.released; });
             for (Atom& atom : of_resource(r).atoms) {

@@ -102,12 +102,13 @@ private:
 
     Object make_object(const GraphDesc& graph, const Plan& plan, std::uint32_t resource,
                        std::span<const std::uint32_t> accesses);
-    void carry_over(const GraphDesc& graph, const GraphDesc& last_graph, const std::vector<std::uint32_t>& last);
+    void carry_over(const GraphDesc& graph, const Plan& plan, const std::vector<std::uint32_t>& last);
 
     std::vector<Object> objects_;
     std::vector<std::uint32_t> current_; ///< this frame's objects by resource
     std::vector<Heap> heaps_;
     const GraphDesc* last_graph_ = nullptr;
+    const Plan* last_plan_ = nullptr;
     std::uint32_t frame_ = 0; ///< the number of the present one, from 1
 };
 

@@ -29,6 +29,8 @@ forbid rendergraph '# *include *<(glm|GLFW)/' 'needs Vulkan headers and tl::expe
 report 'rendergraph reads and writes JSON through json_types.hpp only' \
     "$(grep -rnE --include='*.hpp' --include='*.cpp' '# *include *<nlohmann/' rendergraph | grep -v '^rendergraph/json_types.hpp:' || true)"
 forbid rendergraph '# *include *<vulkan/vulkan.h(pp)?>' 'includes vulkan_core.h and no platform headers'
+report 'the checker shares nothing with compile but the graph, the plan and the access table' \
+    "$(grep -sHnE '^ *# *include *"' rendergraph/verify* | grep -vE '"rendergraph/(verify[a-z_]*|plan|graph_desc|access)\.hpp"' || true)"
 forbid features '# *include *<GLFW/' 'opens no window'
 forbid engine 'volumetrics(/|::)' 'knows no feature by name'
 exit $broken

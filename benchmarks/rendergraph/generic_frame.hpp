@@ -1,0 +1,64 @@
+// The frame that compile and verify are measured with: each pass reads 2 of the last 16 outputs and writes one, a
+// quarter may run on async compute, a tenth has no consumer.
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "rendergraph/graph.hpp"
+#include "rendergraph/plan.hpp"
+
+namespace tyndall::rg::bench {
+
+inline std::vector<std::string> names(const char* kind, std::size_t count) {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < count; ++i) {
+        out.push_back(kind + std::to_string(i));
+    }
+    return out;
+}
+
+inline DeclaredGraph generic_frame(const std::vector<std::string>& pass_names,
+                                   const std::vector<std::string>& image_names) {
+    std::mt19937 random(1);
+    GraphBuilder graph;
+    const auto count = static_cast<std::uint32_t>(pass_names.size());
+    std::vector<Image> recent;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Image out =
+            graph.create_image(image_names[i], {.format = VK_FORMAT_R16G16B16A16_SFLOAT, .extent = {256, 256, 1}});
+        PassBuilder pass = graph.add_pass(pass_names[i], PassKind::compute);
+        for (std::uint32_t k = 0; k < 2 && recent.size() > k; ++k) {
+            const std::size_t back = (random() % (std::min<std::size_t>(recent.size(), 16) / 2 + 1)) * 2 + k;
+            pass.reads(recent[recent.size() - 1 - std::min(back, recent.size() - 1 - k)], Access::sampled_compute);
+        }
+        pass.writes(out, Access::storage_compute).executes([out](PassContext&) { benchmark::DoNotOptimize(&out); });
+        if (random() % 4 == 0) {
+            pass.on_queue(QueueWish::async_compute);
+        }
+        if (random() % 10 != 0) {
+            recent.push_back(out); // the others feed nothing
+        }
+    }
+    Buffer result = graph.import_buffer("result", {.size_bytes = 256}, {.has_final = true});
+    PassBuilder last = graph.add_pass("last", PassKind::compute);
+    for (std::size_t i = 0; i < 16 && i < recent.size(); ++i) {
+        last.reads(recent[recent.size() - 1 - i], Access::sampled_compute);
+    }
+    last.writes(result, Access::storage_compute);
+    return graph.finish();
+}
+
+inline const QueueTopology two_queues = {{{QueueKind::graphics, 0, can_graphics | can_compute | can_transfer},
+                                          {QueueKind::compute, 1, can_compute | can_transfer}}};
+
+inline void report_per_pass(benchmark::State& state) {
+    state.counters["per_pass"] =
+        benchmark::Counter(static_cast<double>(state.range(0)),
+                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+} // namespace tyndall::rg::bench
