@@ -87,6 +87,16 @@ tl::expected<Device, Error> Device::create(const VulkanInstance& instance, std::
     return device;
 }
 
+std::vector<std::uint32_t> Device::queue_families() const {
+    std::vector<std::uint32_t> families;
+    for (const rg::DeviceQueue& queue : queues_) {
+        if (std::find(families.begin(), families.end(), queue.family) == families.end()) {
+            families.push_back(queue.family);
+        }
+    }
+    return families;
+}
+
 rg::ExecutorInfo Device::executor_info(bool profile) const {
     return {.get_device_proc_addr = get_proc_,
             .device = device_,

@@ -39,6 +39,8 @@ public:
     /// Graphics first; then async compute and transfer queues where the device has them.
     [[nodiscard]] const std::vector<rg::DeviceQueue>& queues() const { return queues_; }
     [[nodiscard]] const rg::DeviceQueue& graphics_queue() const { return queues_.front(); }
+    /// Each family of those queues once: who shares a buffer that passes on any queue may use.
+    [[nodiscard]] std::vector<std::uint32_t> queue_families() const;
     /// Mesa's driver for processors, whose timestamps need a full barrier each.
     [[nodiscard]] bool is_lavapipe() const { return info_.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE; }
     /// For rg::Executor::create, with this device's handles, queues and quirks filled in.

@@ -55,10 +55,15 @@ tl::expected<Buffer, Error> Buffer::create(const Device& device, VkDeviceSize si
     Buffer buffer;
     buffer.device_ = &device;
     buffer.size_bytes_ = size_bytes == 0 ? 4 : size_bytes; // Vulkan has no empty buffers
+    // Buffers are read by passes on any queue, and sharing costs a buffer nothing.
+    const std::vector<std::uint32_t> families = device.queue_families();
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                   .size = buffer.size_bytes_,
                                   .usage = usage,
-                                  .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+                                  .sharingMode =
+                                      families.size() > 1 ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
+                                  .queueFamilyIndexCount = static_cast<std::uint32_t>(families.size()),
+                                  .pQueueFamilyIndices = families.data()};
     const rg::DeviceTable& vk = device.vk();
     if (vk.CreateBuffer(device.handle(), &info, nullptr, &buffer.buffer_) != VK_SUCCESS) {
         return tl::unexpected(Error{"No buffer of " + mebibytes(size_bytes) + " could be made"});
@@ -98,6 +103,8 @@ tl::expected<DeviceImage, Error> DeviceImage::create(const Device& device, const
     DeviceImage image;
     image.device_ = &device;
     image.info_ = info;
+    const std::vector<std::uint32_t> families = device.queue_families();
+    const bool shared = info.shared_between_queues && families.size() > 1;
     const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                                    .flags = info.flags,
                                    .imageType = info.type,
@@ -108,7 +115,9 @@ tl::expected<DeviceImage, Error> DeviceImage::create(const Device& device, const
                                    .samples = VK_SAMPLE_COUNT_1_BIT,
                                    .tiling = VK_IMAGE_TILING_OPTIMAL,
                                    .usage = info.usage,
-                                   .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                                   .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
+                                   .queueFamilyIndexCount = static_cast<std::uint32_t>(families.size()),
+                                   .pQueueFamilyIndices = families.data(),
                                    .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
     const rg::DeviceTable& vk = device.vk();
     const std::string size = std::to_string(info.extent.width) + "x" + std::to_string(info.extent.height);

@@ -57,6 +57,7 @@ struct ImageInfo {
     VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     VkImageType type = VK_IMAGE_TYPE_2D;
     VkImageCreateFlags flags = 0;
+    bool shared_between_queues = false; ///< used by several queue families without handing over the ownership
 };
 
 /// An image in device memory with a view of all of it. Move-only.

@@ -190,6 +190,8 @@ tl::expected<ParticleDraws, Error> ParticleSystem::declare(rg::GraphBuilder& gra
     draws.frame = graph.import_buffer("particle emitters", {.size_bytes = slot.frame.size_bytes()}, written_by_host);
     const rg::Buffer splits =
         graph.import_buffer("particle split depths", {.size_bytes = slot.splits.size_bytes()}, written_by_host);
+    graph.share_between_queues(draws.frame);
+    graph.share_between_queues(splits);
     draws.particles = graph.create_buffer("particles", {.size_bytes = count() * sizeof(gpu::GpuParticle)});
     draws.keys = graph.create_buffer("particle keys", {.size_bytes = key_bytes});
     draws.commands = graph.create_buffer("particle draws", {.size_bytes = draws.interval_count * command_bytes});

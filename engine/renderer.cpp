@@ -80,6 +80,7 @@ tl::expected<void, Error> Renderer::make(VkPipelineCache cache, std::uint32_t fr
 
 rg::Buffer Renderer::import(rg::GraphBuilder& graph, const char* name, const Buffer& buffer) {
     const rg::Buffer handle = graph.import_buffer(name, {.size_bytes = buffer.size_bytes()}, never_written);
+    graph.share_between_queues(handle);
     bindings_.push_back({.resource = handle.resource, .buffer = buffer.handle()});
     return handle;
 }

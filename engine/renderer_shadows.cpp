@@ -37,6 +37,7 @@ rg::Image Renderer::cascade_image(rg::GraphBuilder& graph, bool drawn) {
     }
     cascade_cache_->has_layout = true;
     const rg::Image image = graph.import_image("sun cascades", desc, import);
+    graph.share_between_queues(image);
     bindings_.push_back({.resource = image.resource, .image = cascade_cache_->image.handle()});
     return image;
 }
@@ -53,7 +54,8 @@ tl::expected<void, Error> Renderer::declare_shadows(rg::GraphBuilder& graph, rg:
             *device_, {.format = depth_format,
                        .extent = {side, side, 1},
                        .layers = settings_.cascades.count,
-                       .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT});
+                       .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                       .shared_between_queues = true});
         if (!image) {
             return tl::unexpected(image.error());
         }

@@ -102,7 +102,10 @@ tl::expected<Refined, Diagnostics> refine_schedule(const GraphDesc& graph, const
     Found found = search_schedule(work, costs, judge, most_steps);
     refined.shortest = found.shortest;
     refined.steps = found.steps;
-    if (current_ns - found.score.makespan_ns >= std::max<std::int64_t>(current.threshold_ns, 1)) {
+    // With no plan to keep, an equal length is enough: then it is for less memory or fewer waits.
+    const bool fresh = previous == nullptr && current.reason == DecisionReason::overlap_pays;
+    const std::int64_t least_gain_ns = fresh ? 0 : std::max<std::int64_t>(current.threshold_ns, 1);
+    if (current_ns - found.score.makespan_ns >= least_gain_ns) {
         const Plan better = as_previous(work, found.schedule, refined.plan);
         refined.plan = *compile(graph, topology, memory, options, costs, &better);
     }

@@ -145,7 +145,7 @@ private:
                     true; // ownership is with one family, and released by one queue, at a time
             }
             if (!previous_is_write) {
-                if (spans_queues) {
+                if (spans_queues && !(begin == 0 && ready_for_all(resource))) {
                     for (std::size_t i = begin + 1; i < end; ++i) {
                         add(*uses[begin], *uses[i]);
                     }
@@ -169,6 +169,17 @@ private:
                 add(*uses[i], *uses.back());
             }
         }
+    }
+
+    /// A buffer that the host leaves finished: its first readers need nothing done, so none of them goes first.
+    [[nodiscard]] bool ready_for_all(std::uint32_t resource) const {
+        const ResourceDesc& desc = graph_.resources[resource];
+        if (desc.kind != ResourceKind::buffer || desc.import == none) {
+            return false;
+        }
+        const ImportDesc& import = graph_.imports[desc.import];
+        return !import.waits_semaphore && import.initial_stages == 0 &&
+               import.initial_family == VK_QUEUE_FAMILY_IGNORED;
     }
 
     void add(const Use& from, const Use& to) {

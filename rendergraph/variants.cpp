@@ -32,9 +32,16 @@ public:
             forms_[v] = previous_->variants[v].form;
         }
         Attempt best = attempt();
-        std::vector<VariantDecision> decisions;
-        for (std::uint32_t v = 0; v < forms_.size(); ++v) {
-            decisions.push_back(choose(v, best));
+        // One variant's best form may depend on another's: until a round changes nothing. Each change shortens the
+        // frame, so it ends; and a frame compiled again with its own plan as the previous one stays.
+        std::vector<VariantDecision> decisions(forms_.size());
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (std::uint32_t v = 0; v < forms_.size(); ++v) {
+                const std::uint32_t before = forms_[v];
+                decisions[v] = choose(v, best);
+                changed = changed || forms_[v] != before;
+            }
         }
         if (!errors_.empty()) {
             return tl::unexpected(std::move(errors_));

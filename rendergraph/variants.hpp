@@ -13,9 +13,9 @@ namespace tyndall::rg::stages {
 /// Compiles a graph in which every variant has one form only.
 using CompileForm = std::function<tl::expected<Plan, Diagnostics>(const GraphDesc&)>;
 
-/// Keeps the form of each variant with which the frame is predicted to be shortest: one variant after the other, each
-/// form compiled once, with the forms chosen so far. `previous` (or null) keeps its forms unless another gains the
-/// threshold. A mistake in any form is an error. O(all forms) compilations.
+/// Keeps the form of each variant with which the frame is predicted to be shortest: one variant after the other, with
+/// the forms chosen so far, until none changes. `previous` (or null) keeps its forms unless another gains the
+/// threshold. A mistake in any form is an error. O(all forms) compilations a round; two rounds are usual.
 [[nodiscard]] tl::expected<Plan, Diagnostics> compile_variants(const GraphDesc& graph, const Costs& costs,
                                                                std::uint64_t passes_hash, const Plan* previous,
                                                                const CompileForm& compile_form);

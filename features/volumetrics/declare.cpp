@@ -67,6 +67,7 @@ void Feature::State::declare_clustering(rg::GraphBuilder& graph) {
     const HostBuffers::Slot& slot = host_buffers->slot(frame->inputs.frame_slot);
     const rg::Buffer parameters = graph.import_buffer("light cluster parameters",
                                                       {.size_bytes = sizeof(gpu::LightClusters)}, {.read_only = true});
+    graph.share_between_queues(parameters);
     import_bindings.push_back({.resource = parameters.resource, .buffer = slot.clusters});
     rg::Buffer masks = graph.create_buffer("light cluster masks", {.size_bytes = VkDeviceSize{words} * 4});
     const std::uint32_t compact_count = std::min<std::uint32_t>(c.grid.w, TYNDALL_COMPACT_LIGHT_COUNT);

@@ -123,7 +123,8 @@ tl::expected<Feature, Error> Feature::create(const FeatureInfo& info) {
         return tl::unexpected(
             Error{"FeatureInfo must name a device, its function table and at least one frame in flight."});
     }
-    auto buffers = HostBuffers::create(*info.vk, info.device, info.memory_properties, info.frames_in_flight);
+    auto buffers =
+        HostBuffers::create(*info.vk, info.device, info.memory_properties, info.frames_in_flight, info.queue_families);
     if (!buffers) {
         return tl::unexpected(buffers.error());
     }
@@ -198,6 +199,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     const HostBuffers::Slot& slot = state.host_buffers->slot(frame.inputs.frame_slot);
     frame.parameter_buffer = graph.import_buffer(
         "volumetric parameters", {.size_bytes = sizeof(gpu::VolumetricParameters)}, {.read_only = true});
+    graph.share_between_queues(frame.parameter_buffer);
     state.import_bindings.push_back({.resource = frame.parameter_buffer.resource, .buffer = slot.parameters});
 
     if (frame.inputs.medium.noise.amplitude <= 0.0F) {

@@ -32,6 +32,8 @@ struct FeatureInfo {
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE; ///< may be null
     VkPhysicalDeviceMemoryProperties memory_properties = {};
     std::uint32_t frames_in_flight = 2;
+    /// Every family whose queues a frame's passes may run on: the feature's own buffers are shared between them.
+    std::vector<std::uint32_t> queue_families = {};
 };
 
 /// gpu::GpuLight each, FrameInputs::light_count of them, in render space; needed only when there are any.

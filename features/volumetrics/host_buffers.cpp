@@ -25,17 +25,22 @@ int host_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32
 
 } // namespace
 
-VkResult HostBuffers::make_buffer(VkDeviceSize size_bytes, VkBuffer& buffer) {
+VkResult HostBuffers::make_buffer(VkDeviceSize size_bytes, std::span<const std::uint32_t> queue_families,
+                                  VkBuffer& buffer) {
+    const bool shared = queue_families.size() > 1;
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                   .size = size_bytes,
                                   .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-                                  .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+                                  .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
+                                  .queueFamilyIndexCount = static_cast<std::uint32_t>(queue_families.size()),
+                                  .pQueueFamilyIndices = queue_families.data()};
     return vk_->CreateBuffer(device_, &info, nullptr, &buffer);
 }
 
 tl::expected<std::unique_ptr<HostBuffers>, Error> HostBuffers::create(const rg::DeviceTable& vk, VkDevice device,
                                                                       const VkPhysicalDeviceMemoryProperties& memory,
-                                                                      std::uint32_t slots) {
+                                                                      std::uint32_t slots,
+                                                                      std::span<const std::uint32_t> queue_families) {
     std::unique_ptr<HostBuffers> self(new HostBuffers(vk, device));
     self->slots_.resize(slots);
     VkResult result = VK_SUCCESS;
@@ -45,8 +50,8 @@ tl::expected<std::unique_ptr<HostBuffers>, Error> HostBuffers::create(const rg::
     for (Slot& slot : self->slots_) {
         for (const bool parameters : {true, false}) {
             VkBuffer& buffer = parameters ? slot.parameters : slot.clusters;
-            result =
-                self->make_buffer(parameters ? sizeof(gpu::VolumetricParameters) : sizeof(gpu::LightClusters), buffer);
+            result = self->make_buffer(parameters ? sizeof(gpu::VolumetricParameters) : sizeof(gpu::LightClusters),
+                                       queue_families, buffer);
             if (result != VK_SUCCESS) {
                 return tl::unexpected(buffer_error(result));
             }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -22,7 +23,7 @@ public:
 
     [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffers>, Error>
     create(const rg::DeviceTable& vk, VkDevice device, const VkPhysicalDeviceMemoryProperties& memory,
-           std::uint32_t slots);
+           std::uint32_t slots, std::span<const std::uint32_t> queue_families);
     HostBuffers(const HostBuffers&) = delete;
     HostBuffers& operator=(const HostBuffers&) = delete;
     ~HostBuffers(); ///< no frame that reads a slot may be in flight
@@ -34,7 +35,8 @@ public:
 
 private:
     HostBuffers(const rg::DeviceTable& vk, VkDevice device) : vk_(&vk), device_(device) {}
-    [[nodiscard]] VkResult make_buffer(VkDeviceSize size_bytes, VkBuffer& buffer);
+    [[nodiscard]] VkResult make_buffer(VkDeviceSize size_bytes, std::span<const std::uint32_t> queue_families,
+                                       VkBuffer& buffer);
 
     const rg::DeviceTable* vk_;
     VkDevice device_;

@@ -72,7 +72,7 @@ struct Settings {
     TemporalSettings temporal;
     StorageFormat storage = StorageFormat::fp16;
     bool clusters = true;       ///< false: every froxel visits every light
-    bool async_compute = false; ///< asks for the compute passes to run on an async compute queue
+    bool async_compute = false; ///< the compute passes ask for async compute; else the scheduler decides
 };
 
 /// The first value outside its domain, by its key in the fog file ("grid.range_m must be ...").

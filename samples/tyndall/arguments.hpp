@@ -19,7 +19,11 @@ struct Size {
 /// "1280x720"; each side 1 to 16384. The error is one sentence.
 [[nodiscard]] tl::expected<Size, std::string> parse_size(std::string_view text);
 
-enum class Queues : std::uint8_t { one, two };
+enum class Queues : std::uint8_t {
+    one,
+    two,      ///< graphics and async compute, which the fog asks for; folded where the device has one
+    measured, ///< the same queues, used where measured durations say that it pays
+};
 
 struct RenderArguments {
     std::filesystem::path scene;
@@ -42,8 +46,7 @@ struct RenderArguments {
     bool timing = false;
     std::optional<std::filesystem::path> stages_dir;
     std::string device;
-    Queues queues =
-        Queues::one; ///< two: the plan is made for graphics and async compute, and folded where there is one
+    Queues queues = Queues::one; ///< that the plan is made for
     bool validate = false;
     bool fp32 = false; ///< scene colour in 32 bits, as --out *.exr does by itself
     bool json = false;

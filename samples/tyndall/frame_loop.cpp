@@ -66,7 +66,7 @@ Result FrameLoop::make(engine::Scene scene, FrameLoopInfo info) {
         renderer_->set_particles(&*particles_);
     }
     if (info.fog) {
-        info.fog->settings.async_compute = info.two_queues;
+        info.fog->settings.async_compute = info.two_queues && info.ask_for_async;
         auto glue = VolumetricsGlue::create(*device_, cache_->handle(), frames_in_flight, info.renderer.color_format,
                                             *info.fog);
         if (!glue) {
@@ -177,7 +177,8 @@ Result FrameLoop::run(const FrameWishes& wishes) {
         return tl::unexpected(*glue_->error());
     }
     declared_ = graph.finish();
-    auto plan = rg::compile(declared_.desc, topology_, executor_->memory_requirements(declared_.desc));
+    auto plan = rg::compile(declared_.desc, topology_, executor_->memory_requirements(declared_.desc), {},
+                            durations_.costs(declared_.desc), &plan_);
     if (!plan) {
         return tl::unexpected(engine::Error{"The frame does not compile: " + rg::to_text(plan.error())});
     }
@@ -203,6 +204,7 @@ Result FrameLoop::run(const FrameWishes& wishes) {
             return waited;
         }
         timings_ = executor_->timings();
+        durations_.add_frame(declared_.desc, plan_, timings_);
         take_images(wishes);
     }
     return {};

@@ -15,6 +15,7 @@
 #include "engine/particles.hpp"
 #include "engine/pipelines.hpp"
 #include "engine/renderer.hpp"
+#include "rendergraph/durations.hpp"
 #include "rendergraph/executor.hpp"
 #include "samples/tyndall/stage_images.hpp"
 #include "samples/tyndall/volumetrics_glue.hpp"
@@ -26,6 +27,8 @@ struct FrameLoopInfo {
     std::optional<volumetrics::Fog> fog;
     std::vector<engine::ParticleEmitter> emitters;
     bool two_queues = false; ///< plan for graphics and async compute
+    bool ask_for_async =
+        true; ///< of two: the fog asks for async compute; else measured durations decide (with profile)
     bool profile = false;
 };
 
@@ -84,6 +87,7 @@ private:
     std::vector<rg::ImportBinding> read_bindings_;
     rg::DeclaredGraph declared_;
     rg::Plan plan_;
+    rg::Durations durations_;
     std::uint64_t frame_index_ = 0;
     std::uint64_t submitted_ = 0;
     std::vector<rg::PassTiming> timings_;

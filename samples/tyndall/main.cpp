@@ -74,8 +74,11 @@ int run(int argc, char** argv) {
                                "write the predicted and the measured timeline, for Perfetto or chrome://tracing");
     render_command->add_option("--dump-stages", render.stages_dir, "write a picture of each intermediate to a folder");
     render_command->add_option("--device", render.device, "part of a device's name, or its index; see tyndall info");
-    render_command->add_option("--queues", queues, "queues that the plan is made for: one or two")
-        ->check(CLI::IsMember({"one", "two"}))
+    render_command
+        ->add_option(
+            "--queues", queues,
+            "queues that the plan is made for: one, two (fog on async compute), or measured (two, used where it pays)")
+        ->check(CLI::IsMember({"one", "two", "measured"}))
         ->capture_default_str();
     render_command->add_flag("--validate", render.validate,
                              "run under the Khronos validation layer; a message fails the run");
@@ -105,7 +108,7 @@ int run(int argc, char** argv) {
             return bad_input(parsed.error());
         }
         render.size = *parsed;
-        render.queues = queues == "two" ? Queues::two : Queues::one;
+        render.queues = queues == "two" ? Queues::two : queues == "measured" ? Queues::measured : Queues::one;
         return run_render(render);
     }
     return schedule_command->parsed() ? run_schedule(schedule) : run_info(info);

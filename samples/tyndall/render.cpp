@@ -328,9 +328,10 @@ Expected<void> render(const RenderArguments& arguments) {
     FrameLoopInfo info;
     info.fog = *fog;
     info.emitters = std::move(*emitters);
-    info.two_queues = arguments.queues == Queues::two;
-    info.profile = arguments.timing || arguments.timing_file || arguments.explain || arguments.explain_file ||
-                   arguments.json || arguments.export_frame;
+    info.two_queues = arguments.queues != Queues::one;
+    info.ask_for_async = arguments.queues == Queues::two;
+    info.profile = arguments.queues == Queues::measured || arguments.timing || arguments.timing_file ||
+                   arguments.explain || arguments.explain_file || arguments.json || arguments.export_frame;
     info.renderer.exposure.ev100 = arguments.exposure_ev100;
     const bool exr = std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
                                  [](const auto& path) { return path.extension() == ".exr"; });

@@ -19,7 +19,8 @@ tl::expected<VolumetricsGlue, engine::Error> VolumetricsGlue::create(const engin
                                       .device = device.handle(),
                                       .pipeline_cache = cache,
                                       .memory_properties = device.memory_properties(),
-                                      .frames_in_flight = frames_in_flight});
+                                      .frames_in_flight = frames_in_flight,
+                                      .queue_families = device.queue_families()});
     if (!feature) {
         return tl::unexpected(engine::Error{feature.error().message});
     }

@@ -1,9 +1,9 @@
 // Queues chosen by durations: when overlap pays, when it does not, and that a plan does not flutter.
-#include <cstdlib>
 #include <iostream>
 
 #include "rendergraph/simulate.hpp"
 #include "rendergraph/verify.hpp"
+#include "tests/rendergraph/any_frame.hpp"
 #include "tests/rendergraph/random_costs.hpp"
 #include "tests/rendergraph/random_graph.hpp"
 
@@ -161,6 +161,28 @@ TEST_F(Scheduling, AnImportThatTheHostDoesNotShareStaysInItsFamily) {
     EXPECT_EQ(queue_of(compiled_with(declared.desc, worth_it), 0), 1U);
 }
 
+TEST_F(Scheduling, ReadersOfAFinishedImportDoNotWaitForEachOther) {
+    GraphBuilder graph;
+    Buffer parameters = graph.import_buffer("parameters", {.size_bytes = 64}, {.read_only = true});
+    graph.share_between_queues(parameters);
+    Image output = graph.import_image("output", color_image(), left_for_host());
+    Buffer fog = graph.create_buffer("fog", {.size_bytes = 64});
+    graph.add_pass("fog", PassKind::compute)
+        .reads(parameters, Access::uniform_compute)
+        .writes(fog, Access::storage_compute);
+    graph.add_pass("opaque", PassKind::graphics)
+        .reads(parameters, Access::uniform_graphics)
+        .writes(output, Access::color_attachment);
+    graph.add_pass("apply", PassKind::graphics)
+        .reads(fog, Access::storage_fragment)
+        .modifies(output, Access::color_attachment);
+    const DeclaredGraph declared = graph.finish();
+    const Plan plan = compiled_with(declared.desc, costs(2 * ms, 3 * ms, 1 * ms));
+    EXPECT_EQ(queue_of(plan, 0), 1U);
+    EXPECT_EQ(plan.statistics.wait_count, 1U) << to_text(declared.desc, plan); // apply waits for fog, and that is all
+    EXPECT_EQ(plan.decision.overlap_ns, 5 * ms);
+}
+
 TEST_F(Scheduling, APlanStaysWhileCostsChangeALittle) {
     const DeclaredGraph declared = graph_.finish();
     // Gain is half of density's time; the threshold 0.1 ms. At 0.26 ms overlap starts ...
@@ -213,18 +235,20 @@ TEST_F(Scheduling, APreviousPlanOfAnotherFrameIsIgnored) {
 }
 
 TEST(SchedulingCorpus, OverlapIsNeverLongerThanSerialNorShorterThanTheBound) {
-    const char* count = std::getenv("TYNDALL_RANDOM_GRAPHS");
-    const std::uint32_t seeds = count != nullptr ? static_cast<std::uint32_t>(std::atol(count)) : 2'000;
+    const std::uint32_t seeds = random_graph_count(2'000);
     std::uint32_t overlapped = 0;
     std::uint32_t chosen = 0;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
-        const DeclaredGraph declared = random_frame(seed);
-        const Costs costs = random_costs(seed, declared.desc.passes.size(), seed % 2 == 0);
-        const auto plan = compile(declared.desc, random_topology(seed), estimate_memory(declared.desc), {}, costs);
+        const AnyFrame any = any_frame(seed);
+        const DeclaredGraph small = random_frame(seed);
+        const GraphDesc& graph = seed % 4 < 2 ? any.graph : small.desc;
+        const QueueTopology topology = seed % 4 < 2 ? any.topology : random_topology(seed);
+        const Costs costs = random_costs(seed, graph.passes.size(), seed % 2 == 0);
+        const auto plan = compile(graph, topology, estimate_memory(graph), {}, costs);
         ASSERT_TRUE(plan.has_value()) << seed;
-        ASSERT_TRUE(verify(declared.desc, *plan).empty()) << seed;
+        ASSERT_TRUE(verify(graph, *plan).empty()) << seed;
         const AsyncDecision& d = plan->decision;
-        const std::int64_t makespan = simulate(declared.desc, *plan, costs).makespan_ns;
+        const std::int64_t makespan = simulate(graph, *plan, costs).makespan_ns;
         ASSERT_GE(makespan, d.lower_bound_ns) << seed;
         overlapped += d.overlaps ? 1 : 0;
         if (d.reason == DecisionReason::overlap_pays) {
@@ -233,17 +257,15 @@ TEST(SchedulingCorpus, OverlapIsNeverLongerThanSerialNorShorterThanTheBound) {
             // Against everything at home: the graphics queue, and where passes were asked for.
             Costs never = costs;
             never.threshold_ns = 1'000 * ms;
-            const auto home = compile(declared.desc, random_topology(seed), estimate_memory(declared.desc), {}, never);
-            ASSERT_LE(makespan + std::max<std::int64_t>(d.threshold_ns, 1),
-                      simulate(declared.desc, *home, costs).makespan_ns)
+            const auto home = compile(graph, topology, estimate_memory(graph), {}, never);
+            ASSERT_LE(makespan + std::max<std::int64_t>(d.threshold_ns, 1), simulate(graph, *home, costs).makespan_ns)
                 << seed;
         } else if (!d.overlaps) {
             ASSERT_EQ(makespan, d.serial_ns) << seed;
         }
         // The plan under its own costs, given back, stays what it is.
-        const auto again =
-            compile(declared.desc, random_topology(seed), estimate_memory(declared.desc), {}, costs, &*plan);
-        ASSERT_EQ(to_text(declared.desc, *again), to_text(declared.desc, *plan)) << seed;
+        const auto again = compile(graph, topology, estimate_memory(graph), {}, costs, &*plan);
+        ASSERT_EQ(to_text(graph, *again), to_text(graph, *plan)) << seed;
         ASSERT_FALSE(again->decision.kept_by_hysteresis) << seed;
     }
     std::cout << seeds << " random frames: " << overlapped << " overlap, " << chosen << " of them by choice\n";
