@@ -1,6 +1,9 @@
 // The checker: silent on what compile makes, and not silent on what is broken on purpose.
 #include "rendergraph/verify.hpp"
 
+#include <map>
+#include <set>
+
 #include "tests/rendergraph/any_frame.hpp"
 #include "tests/rendergraph/frames.hpp"
 #include "tests/rendergraph/shrink.hpp"
@@ -35,6 +38,89 @@ TEST(Verify, RandomFramesAreProved) {
         planned += static_cast<std::uint32_t>(plan->passes.size());
     }
     std::printf("seeds 1 to %u: %u passes planned, no violation\n", count, planned);
+}
+
+/// What the random frames must not stop to say, by how many plans of 1,000 have it.
+TEST(Verify, RandomFramesSayEverything) {
+    std::map<std::string, std::uint32_t> seen;
+    for (std::uint32_t seed = 1; seed <= 1000; ++seed) {
+        const AnyFrame frame = any_frame(seed);
+        const auto plan = plan_of(frame);
+        ASSERT_TRUE(plan.has_value());
+        std::set<std::string> here;
+        for (const AccessDesc& a : frame.graph.accesses) {
+            here.insert(std::string(access_info(a.access).name));
+            here.insert(a.buffer_range.size != whole_buffer ? "byte range" : "whole buffer");
+            here.insert(a.direction == Direction::modify ? "modifies" : "reads or replaces");
+        }
+        for (const ResourceDesc& r : frame.graph.resources) {
+            here.insert(r.image.mips > 1 ? "mips" : "one mip");
+            here.insert(r.image.layers > 1 ? "layers" : "one layer");
+            here.insert(r.image.type == VK_IMAGE_TYPE_3D ? "3D image" : "2D image");
+            here.insert(r.concurrent ? "asked to be shared" : "not shared");
+            here.insert(r.kind == ResourceKind::image ? "image" : "buffer");
+            if (r.has_history) {
+                here.insert(r.kind == ResourceKind::image ? "history of an image" : "history of a buffer");
+            }
+        }
+        for (const ImportDesc& import : frame.graph.imports) {
+            here.insert(import.waits_semaphore ? "host's semaphore before" : "no semaphore before");
+            here.insert(import.signals_semaphore ? "host's semaphore after" : "no semaphore after");
+            here.insert(import.initial_family != VK_QUEUE_FAMILY_IGNORED ? "owner before" : "no owner before");
+            here.insert(import.final_family != VK_QUEUE_FAMILY_IGNORED ? "owner after" : "no owner after");
+            here.insert(import.read_only ? "read-only import" : "import");
+        }
+        for (const PlannedPass& pass : plan->passes) {
+            here.insert(std::string(name_of(frame.graph.passes[pass.pass].kind)) + " pass");
+            here.insert("queue " + std::to_string(pass.queue));
+        }
+        for (const Dependency& d : plan->dependencies) {
+            here.insert(std::string(name_of(d.hazard)));
+            here.insert(d.transfers_ownership ? "ownership transfer" : "no transfer");
+        }
+        for (const VariantDecision& v : plan->variants) {
+            here.insert("form " + std::to_string(v.form));
+        }
+        here.insert(plan->culled_passes.empty() ? "nothing left out" : "passes left out");
+        for (const std::string& what : here) {
+            ++seen[what];
+        }
+    }
+    for (std::size_t i = 0; i < access_count; ++i) {
+        const Access access = static_cast<Access>(i);
+        if (access != Access::present) { // which the exit of an import stands for
+            EXPECT_GE(seen[std::string(access_info(access).name)], 10U) << access_info(access).name;
+        }
+    }
+    for (const char* what : {"byte range",
+                             "modifies",
+                             "mips",
+                             "layers",
+                             "3D image",
+                             "asked to be shared",
+                             "history of an image",
+                             "history of a buffer",
+                             "host's semaphore before",
+                             "host's semaphore after",
+                             "owner before",
+                             "owner after",
+                             "read-only import",
+                             "graphics pass",
+                             "compute pass",
+                             "transfer pass",
+                             "host pass",
+                             "queue 0",
+                             "queue 1",
+                             "queue 2",
+                             "ownership transfer",
+                             "form 0",
+                             "form 1",
+                             "passes left out"}) {
+        EXPECT_GE(seen[what], 10U) << what;
+    }
+    for (std::uint8_t h = 0; h <= static_cast<std::uint8_t>(Hazard::history_rest); ++h) {
+        EXPECT_GE(seen[std::string(name_of(static_cast<Hazard>(h)))], 10U) << name_of(static_cast<Hazard>(h));
+    }
 }
 
 TEST(Verify, EveryDependencyOfTheFogFrameMatters) {
