@@ -123,7 +123,7 @@ bool Replay::ordered(const Event& event, const Toucher& toucher) const {
 }
 
 bool Replay::available_in(const Event& event, const SourceScope& source) const {
-    return covers(source.available.data(), event.at) ||
+    return event.written == 0 || covers(source.available.data(), event.at) ||
            std::any_of(event.available_from.begin(), event.available_from.end(),
                        [&](const Point& point) { return covers(source.ordered.data(), point); });
 }
@@ -133,7 +133,7 @@ bool Replay::available(const Event& event, const Toucher& toucher) const {
         return available_in(event, *toucher.source) ||
                (event.written != 0 && covers_access(toucher.effect->src_access, event.written));
     }
-    return order_.available(event.at, toucher.queue, toucher.stages) ||
+    return event.written == 0 || order_.available(event.at, toucher.queue, toucher.stages) ||
            std::any_of(event.available_from.begin(), event.available_from.end(),
                        [&](const Point& point) { return order_.after(point, toucher.queue, toucher.stages); });
 }

@@ -69,7 +69,6 @@ void Replay::begin_batch(std::uint32_t index) {
         object.awaits_host = false;
         Event event;
         event.at = {batch.queue, order_.begin_command(batch.queue), every_stage & ~host_stage, true};
-        event.available_from = {event.at};
         event.seen_by = {{batch.queue, event.at.stages, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT}};
         for (Atom& atom : object.atoms) {
             atom.last_write = event;
@@ -303,7 +302,6 @@ void Replay::record_act(const Effect& effect, const Point& here) {
     const Region region = region_of(graph_.resources[d.resource], d.image_range, d.buffer_range);
     const Event event{.pass = d.consumer != none ? d.consumer : d.producer,
                       .at = here,
-                      .available_from = {here},
                       .seen_by = {{here.queue, here.stages, effect.dst_access}}};
     for_atoms(object, atoms_meeting(object, region), [&](Atom& atom) {
         atom.last_write = event;

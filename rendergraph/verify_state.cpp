@@ -68,8 +68,12 @@ Object Memory::make_object(const GraphDesc& graph, const Plan& plan, std::uint32
     for (const std::uint32_t i : accesses) {
         const AccessDesc& access = graph.accesses[i];
         const Region region = region_of(resource, access.image_range, access.buffer_range);
-        object.cuts_a.insert(object.cuts_a.end(), {region.first_a, region.end_a});
-        object.cuts_b.insert(object.cuts_b.end(), {region.first_b, region.end_b});
+        if (region.first_a != whole.first_a || region.end_a != whole.end_a) {
+            object.cuts_a.insert(object.cuts_a.end(), {region.first_a, region.end_a});
+        }
+        if (region.first_b != whole.first_b || region.end_b != whole.end_b) {
+            object.cuts_b.insert(object.cuts_b.end(), {region.first_b, region.end_b});
+        }
         if (is_write(access.direction) && of_kept_form(graph, plan, access.pass)) {
             object.writers.push_back(i);
         }
@@ -91,6 +95,7 @@ Object Memory::make_object(const GraphDesc& graph, const Plan& plan, std::uint32
         atom.layout = plan.placements[r].resting_layout; // the executor prepares it where it is another
         atom.defined = true;                             // or known to be worthless: PassContext::history_valid
     }
+    object.atoms.reserve((object.cuts_a.size() - 1) * (object.cuts_b.size() - 1));
     for (std::size_t a = 0; a + 1 < object.cuts_a.size(); ++a) {
         for (std::size_t b = 0; b + 1 < object.cuts_b.size(); ++b) {
             atom.region = {object.cuts_a[a], object.cuts_a[a + 1], object.cuts_b[b], object.cuts_b[b + 1]};
