@@ -43,17 +43,20 @@ stages::Schedule schedule_what_pays(const GraphDesc& graph, const QueueTopology&
     return scheduled(decided.home);
 }
 
-/// A dependency that shows why `batch` waits for `producer_batch`, `none` if only the order of memory asks for it.
-std::uint32_t dependency_behind(const Plan& plan, const std::vector<std::uint32_t>& batch_of_pass, std::uint32_t batch,
-                                std::uint32_t producer_batch) {
+/// Gives each wait the first dependency that shows why; `none` stays where only the order of memory asks for it.
+/// O(dependencies x queues).
+void name_reasons_of_waits(const std::vector<std::uint32_t>& batch_of_pass, Plan& plan) {
     for (std::uint32_t i = 0; i < plan.dependencies.size(); ++i) {
         const Dependency& d = plan.dependencies[i];
-        if (d.consumer != none && d.producer != none && batch_of_pass[d.consumer] == batch &&
-            batch_of_pass[d.producer] == producer_batch) {
-            return i;
+        if (d.consumer == none || d.producer == none) {
+            continue;
+        }
+        for (BatchWait& wait : plan.batches[batch_of_pass[d.consumer]].waits) {
+            if (wait.first_dependency == none && wait.batch == batch_of_pass[d.producer]) {
+                wait.first_dependency = i;
+            }
         }
     }
-    return none;
 }
 
 /// Everything after validation, for a graph without variants.
@@ -115,11 +118,9 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
     }
     for (std::uint32_t i = 0; i < plan.batches.size(); ++i) {
         plan.batches[i].releases = sync.releases[i];
-        for (BatchWait& wait : plan.batches[i].waits) {
-            wait.first_dependency = dependency_behind(plan, batch_of_pass, i, wait.batch);
-        }
         plan.statistics.wait_count += static_cast<std::uint32_t>(plan.batches[i].waits.size());
     }
+    name_reasons_of_waits(batch_of_pass, plan);
     for (std::uint32_t resource = 0; resource < plan.placements.size(); ++resource) {
         plan.placements[resource].resting_layout = sync.resting_layout[resource];
     }
