@@ -184,19 +184,43 @@ private:
     std::vector<Mutant> made_;
 };
 
-bool conflict(const GraphDesc& graph, const Plan& plan, std::uint32_t a, std::uint32_t b) {
+/// Some other planned pass, or who comes after the frame, may use what the bytes of a write hold from a version on.
+bool is_read_later(const GraphDesc& graph, const Plan& plan, const AccessDesc& write, std::uint32_t version) {
+    const ResourceDesc& resource = graph.resources[write.resource];
+    if (resource.lifetime != ResourceLifetime::transient || resource.has_history) {
+        return true;
+    }
+    return std::any_of(graph.accesses.begin(), graph.accesses.end(), [&](const AccessDesc& a) {
+        const bool planned = std::any_of(plan.passes.begin(), plan.passes.end(),
+                                         [&](const PlannedPass& pass) { return pass.pass == a.pass; });
+        return planned && a.resource == write.resource && is_read(a.direction) && a.pass != write.pass &&
+               a.version >= version && have_common_bytes(graph, plan, a, write);
+    });
+}
+
+/// Why two neighbours can change places, looking at what they touch alone.
+std::optional<Harmless> why_swappable(const GraphDesc& graph, const Plan& plan, std::uint32_t a, std::uint32_t b) {
     const PassDesc& pa = graph.passes[a];
     const PassDesc& pb = graph.passes[b];
+    Harmless reason = Harmless::unordered_passes;
     for (std::uint32_t i = pa.first_access; i < pa.first_access + pa.access_count; ++i) {
         for (std::uint32_t k = pb.first_access; k < pb.first_access + pb.access_count; ++k) {
             const AccessDesc& x = graph.accesses[i];
             const AccessDesc& y = graph.accesses[k];
-            if (have_common_bytes(graph, plan, x, y) && (is_write(x.direction) || is_write(y.direction))) {
-                return true;
+            if (!have_common_bytes(graph, plan, x, y) || (!is_write(x.direction) && !is_write(y.direction))) {
+                continue;
             }
+            const bool both_replace = x.direction == Direction::replace && y.direction == Direction::replace;
+            const bool same = x.resource == y.resource;
+            const std::uint32_t first = std::min(x.version, y.version);
+            if (!both_replace || is_read_later(graph, plan, x, same ? first : x.version) ||
+                is_read_later(graph, plan, y, same ? first : y.version)) {
+                return std::nullopt;
+            }
+            reason = Harmless::dead_content;
         }
     }
-    return false;
+    return reason;
 }
 
 /// A semaphore does all of it: no command is recorded.
@@ -249,9 +273,7 @@ std::optional<Harmless> why_harmless(const GraphDesc& graph, const Plan& plan, c
     case Fault::drop_release:
     case Fault::drop_acquire: return std::nullopt; // must always be seen
     case Fault::overlap_bytes: return Harmless::apart_in_time;
-    case Fault::swap_passes:
-        return conflict(graph, plan, mutant.two[0], mutant.two[1]) ? std::nullopt
-                                                                   : std::optional(Harmless::unordered_passes);
+    case Fault::swap_passes: return why_swappable(graph, plan, mutant.two[0], mutant.two[1]);
     case Fault::retarget_queue:
         return families_fit(graph, plan, mutant) ? std::optional(Harmless::same_work_elsewhere) : std::nullopt;
     default: break;
@@ -294,8 +316,8 @@ std::string_view name_of(Fault fault) {
 
 std::string_view name_of(Harmless reason) {
     constexpr std::array<std::string_view, harmless_count> names = {
-        "nothing recorded", "nothing relied on it", "a wait covers", "another barrier covers",
-        "a chain orders",   "unordered passes",     "apart in time", "same work on another queue"};
+        "nothing recorded", "nothing relied on it", "a wait covers", "another barrier covers",    "a chain orders",
+        "unordered passes", "dead content",         "apart in time", "same work on another queue"};
     return names[static_cast<std::size_t>(reason)];
 }
 

@@ -50,10 +50,11 @@ enum class Harmless : std::uint8_t {
     another_barrier_covers, ///< another barrier of the same bytes does
     a_chain_orders,         ///< order alone matters, and barriers of other bytes see to it
     unordered_passes,       ///< the swapped passes have no bytes and no transition in common
+    dead_content,           ///< the swapped passes overwrite one another, still in order, with what nobody reads
     apart_in_time,          ///< all accesses of one of the overlapping resources come before those of the other
     same_work_elsewhere,    ///< the other queue can do it, and all it touches is still ordered and of that family
 };
-inline constexpr std::size_t harmless_count = 8;
+inline constexpr std::size_t harmless_count = 9;
 [[nodiscard]] std::string_view name_of(Harmless reason);
 
 /// Found without the checker: by following each access through the mutant (reach_oracle.hpp). Nothing: not harmless, as
