@@ -76,18 +76,13 @@ private:
     std::int64_t end_ = 0;
 };
 
-/// By queue, in permille: the work that can run nowhere else, against a fair share of all work.
-std::vector<std::int64_t> bound_shares(const Work& work) {
+/// By queue: the work that can run nowhere else.
+std::vector<std::int64_t> bound_work(const Work& work) {
     std::vector<std::int64_t> bound(work.queue_count, 0);
-    std::int64_t total = 0;
     for (std::uint32_t item = 0; item < work.pass.size(); ++item) {
-        total += work.duration_ns[item];
         if (std::has_single_bit(work.allowed[item])) {
             bound[static_cast<std::uint32_t>(std::countr_zero(work.allowed[item]))] += work.duration_ns[item];
         }
-    }
-    for (std::int64_t& share : bound) {
-        share = share * work.queue_count * permille / std::max<std::int64_t>(total, 1);
     }
     return bound;
 }
@@ -96,7 +91,12 @@ std::vector<std::int64_t> bound_shares(const Work& work) {
 
 ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs& costs,
                            std::int64_t reluctance_permille) {
-    const std::vector<std::int64_t> bound = bound_shares(work);
+    std::vector<std::int64_t> unplaced = bound_work(work); // of it, by queue
+    const std::int64_t total = std::accumulate(work.duration_ns.begin(), work.duration_ns.end(), std::int64_t{1});
+    std::vector<std::int64_t> share(unplaced.size()); // in permille of a fair share of all work
+    std::transform(unplaced.begin(), unplaced.end(), share.begin(), [&](std::int64_t bound) {
+        return bound / permille * work.queue_count * reluctance_permille / (total / permille + 1);
+    });
     const std::int64_t cross_ns = cross_queue_within_limits(costs);
     const auto count = static_cast<std::uint32_t>(work.pass.size());
     std::vector<Lane> lanes(work.queue_count);
@@ -104,6 +104,7 @@ ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs
     std::vector<std::uint32_t> queue(count);
     for (const std::uint32_t item : urgency.items) {
         const std::int64_t duration = work.duration_ns[item];
+        const bool free = !std::has_single_bit(work.allowed[item]);
         std::uint32_t best_queue = none;
         std::int64_t best_start = 0;
         Lane::Place best;
@@ -117,7 +118,9 @@ ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs
                 ready = std::max(ready, starts[from] + work.duration_ns[from] + (queue[from] != q ? cross_ns : 0));
             }
             const Lane::Place place = lanes[q].find(ready, duration);
-            const std::int64_t start = place.start + duration / permille * (bound[q] * reluctance_permille / permille);
+            // Bound work that comes after this item anyway does not compete with it.
+            const std::int64_t competing = std::max<std::int64_t>(unplaced[q] - (urgency.rank_ns[item] - duration), 0);
+            const std::int64_t start = place.start + (free ? std::min(competing, duration * share[q] / permille) : 0);
             if (best_queue == none || start < best_start || (start == best_start && q == work.home[item])) {
                 best_queue = q;
                 best_start = start;
@@ -125,6 +128,7 @@ ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs
             }
         }
         lanes[best_queue].take(best, duration);
+        unplaced[best_queue] -= free ? 0 : duration;
         starts[item] = best.start;
         queue[item] = best_queue;
     }

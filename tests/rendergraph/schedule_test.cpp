@@ -161,6 +161,57 @@ TEST_F(Scheduling, AnImportThatTheHostDoesNotShareStaysInItsFamily) {
     EXPECT_EQ(queue_of(compiled_with(declared.desc, worth_it), 0), 1U);
 }
 
+TEST_F(Scheduling, AQueueGetsOnlyWhatItCanDo) {
+    GraphBuilder graph;
+    Buffer source = graph.create_buffer("source", {.size_bytes = 64});
+    Buffer copy = graph.create_buffer("copy", {.size_bytes = 64});
+    Image output = graph.import_image("output", color_image(), left_for_host());
+    graph.add_pass("fill and copy", PassKind::compute)
+        .writes(source, Access::storage_compute)
+        .writes(copy, Access::transfer_destination);
+    graph.add_pass("opaque", PassKind::graphics).writes(output, Access::color_attachment);
+    graph.add_pass("apply", PassKind::graphics)
+        .reads(source, Access::storage_fragment)
+        .reads(copy, Access::storage_fragment)
+        .modifies(output, Access::color_attachment);
+    const DeclaredGraph declared = graph.finish();
+    const Costs worth_it = costs(2 * ms, 3 * ms, 1 * ms);
+    QueueTopology topology = two_queues();
+    EXPECT_EQ(queue_of(compiled_with(declared.desc, worth_it, nullptr, topology), 0), 1U);
+    topology.queues[1].capabilities = can_compute;
+    const Plan plan = compiled_with(declared.desc, worth_it, nullptr, topology);
+    EXPECT_EQ(queue_of(plan, 0), 0U);
+    EXPECT_EQ(plan.passes[0].queue_reason, QueueReason::only_queue_that_can);
+}
+
+TEST_F(Scheduling, AWaitThatHidesNothingIsNotTaken) {
+    // A pass that could run elsewhere, in the middle of a chain of graphics passes: moving it would cost two waits.
+    GraphBuilder graph;
+    Image scene = graph.create_image("scene", color_image());
+    Buffer fog = graph.create_buffer("fog", {.size_bytes = 64});
+    Buffer exposure = graph.create_buffer("exposure", {.size_bytes = 64});
+    Image output = graph.import_image("output", color_image(), left_for_host());
+    graph.add_pass("fog", PassKind::compute).writes(fog, Access::storage_compute);
+    graph.add_pass("opaque", PassKind::graphics).writes(scene, Access::color_attachment);
+    graph.add_pass("apply", PassKind::graphics)
+        .reads(fog, Access::storage_fragment)
+        .modifies(scene, Access::color_attachment);
+    graph.add_pass("exposure", PassKind::compute)
+        .reads(scene, Access::sampled_compute)
+        .writes(exposure, Access::storage_compute);
+    graph.add_pass("tone mapping", PassKind::graphics)
+        .reads(scene, Access::sampled_fragment)
+        .reads(exposure, Access::storage_fragment)
+        .writes(output, Access::color_attachment);
+    const DeclaredGraph declared = graph.finish();
+    Costs chain;
+    chain.of_pass = {{2 * ms, 0}, {3 * ms, 0}, {1 * ms, 0}, {ms / 10, 0}, {ms / 5, 0}};
+    const Plan plan = compiled_with(declared.desc, chain);
+    EXPECT_EQ(queue_of(plan, 0), 1U);
+    EXPECT_EQ(queue_of(plan, 3), 0U);
+    EXPECT_EQ(plan.statistics.wait_count, 1U);
+}
+
 TEST_F(Scheduling, ReadersOfAFinishedImportDoNotWaitForEachOther) {
     GraphBuilder graph;
     Buffer parameters = graph.import_buffer("parameters", {.size_bytes = 64}, {.read_only = true});
@@ -227,7 +278,9 @@ TEST_F(Scheduling, APreviousPlanOfAnotherFrameIsIgnored) {
     std::reverse(broken.passes.begin(), broken.passes.end());
     Plan twice = fresh;
     twice.passes[1] = twice.passes[0];
-    for (const Plan* previous : {&other, &broken, &twice}) {
+    Plan last_twice = fresh;
+    last_twice.passes[2] = last_twice.passes[1];
+    for (const Plan* previous : {&other, &broken, &twice, &last_twice}) {
         const Plan plan = compiled_with(declared.desc, worth_it, previous);
         EXPECT_EQ(to_text(declared.desc, plan), to_text(declared.desc, fresh));
         EXPECT_FALSE(plan.decision.kept_by_hysteresis);
