@@ -3,6 +3,7 @@
 // bytes overlap have all accesses of one before all accesses of the other. Size-descending, best-fitting gap.
 // O(resources^2).
 #include <algorithm>
+#include <span>
 
 #include "rendergraph/stages.hpp"
 
@@ -36,49 +37,97 @@ MemoryRequirements estimate_memory(const GraphDesc& graph) {
 namespace stages {
 namespace {
 
-/// When a resource is used: its first and last slot on each queue.
-struct Lifetime {
-    std::vector<std::uint32_t> first; ///< by queue, `none` if the queue does not use it
-    std::vector<std::uint32_t> last;
-};
+/// When resources are used, by resource and queue, in numbers of passes of that queue.
+class Lifetimes {
+public:
+    Lifetimes(const Schedule& schedule, std::size_t resources)
+        : schedule_(schedule), queues_(schedule.queue_count), ordered_before_(resources * queues_, 0),
+          last_end_(resources * queues_, 0) {}
 
-Lifetime lifetime_of(const Schedule& schedule, std::uint32_t resource) {
-    Lifetime life{std::vector<std::uint32_t>(schedule.queue_count, none),
-                  std::vector<std::uint32_t>(schedule.queue_count, none)};
-    for (std::uint32_t i = schedule.first_use[resource]; i < schedule.first_use[resource + 1]; ++i) {
-        const Use& use = schedule.uses[i];
-        if (life.first[use.queue] == none) {
-            life.first[use.queue] = use.slot;
+    /// O(uses of the resource x queues).
+    void add(std::uint32_t resource) {
+        std::uint32_t* before = ordered_before_.data() + resource * queues_;
+        std::uint32_t* end = last_end_.data() + resource * queues_;
+        std::fill_n(before, queues_, none);
+        for (std::uint32_t i = schedule_.first_use[resource]; i < schedule_.first_use[resource + 1]; ++i) {
+            const Use& use = schedule_.uses[i];
+            const std::uint32_t position = schedule_.position[use.slot];
+            for (std::uint32_t q = 0; q < queues_; ++q) {
+                before[q] = std::min(before[q], q == use.queue ? position : clock(use.slot)[q]);
+            }
+            end[use.queue] = std::max(end[use.queue], position + 1);
         }
-        life.last[use.queue] = use.slot;
     }
-    return life;
-}
 
-/// Every use of `a` happens before every use of `b`: the last of each queue before the first of each queue is enough.
-bool entirely_before(const Schedule& schedule, const Lifetime& a, const Lifetime& b) {
-    for (const std::uint32_t last : a.last) {
-        for (const std::uint32_t first : b.first) {
-            if (last != none && first != none && !schedule.happens_before(last, first)) {
+    /// Every use of `a` happens before every use of `b`. O(queues).
+    [[nodiscard]] bool entirely_before(std::uint32_t a, std::uint32_t b) const {
+        for (std::size_t q = 0; q < queues_; ++q) {
+            if (last_end_[a * queues_ + q] > ordered_before_[b * queues_ + q]) {
                 return false;
             }
         }
+        return true;
     }
-    return true;
-}
 
-/// Some use of the resource is before or at `slot`, and some after or at it.
-bool contains(const Schedule& schedule, const Lifetime& life, std::uint32_t slot) {
-    bool before = false;
-    bool after = false;
-    for (std::uint32_t q = 0; q < schedule.queue_count; ++q) {
-        before = before ||
-                 (life.first[q] != none && (life.first[q] == slot || schedule.happens_before(life.first[q], slot)));
-        after =
-            after || (life.last[q] != none && (life.last[q] == slot || schedule.happens_before(slot, life.last[q])));
+    /// The most bytes of `placed` that are live at one slot: used before or at it, and after or at it.
+    /// O((uses + resources log slots) x queues).
+    [[nodiscard]] VkDeviceSize largest_live_set(std::span<const std::uint32_t> placed,
+                                                std::span<const Placement> placements) const {
+        std::vector<std::vector<std::uint32_t>> slots(queues_); // by queue, in order
+        for (std::uint32_t slot = 0; slot < schedule_.order.size(); ++slot) {
+            slots[schedule_.queue[slot]].push_back(slot);
+        }
+        VkDeviceSize largest = 0;
+        std::vector<VkDeviceSize> begins; // by position: bytes that become live there
+        std::vector<VkDeviceSize> ends;   // and that were live up to there
+        for (std::uint32_t q = 0; q < queues_; ++q) {
+            begins.assign(slots[q].size() + 1, 0);
+            ends.assign(slots[q].size() + 1, 0);
+            for (const std::uint32_t resource : placed) {
+                const auto [begin, end] = live_positions(resource, q, slots[q]);
+                if (begin < end) {
+                    begins[begin] += placements[resource].size_bytes;
+                    ends[end] += placements[resource].size_bytes;
+                }
+            }
+            VkDeviceSize live = 0;
+            for (std::size_t position = 0; position < slots[q].size(); ++position) {
+                live += begins[position];
+                live -= ends[position];
+                largest = std::max(largest, live);
+            }
+        }
+        return largest;
     }
-    return before && after;
-}
+
+private:
+    struct Positions {
+        std::uint32_t begin;
+        std::uint32_t end;
+    };
+    /// Clocks only grow along a queue, so the slots where a resource is live are neighbours.
+    [[nodiscard]] Positions live_positions(std::uint32_t resource, std::uint32_t queue,
+                                           const std::vector<std::uint32_t>& slots) const {
+        Positions live{none, 0};
+        for (std::uint32_t i = schedule_.first_use[resource]; i < schedule_.first_use[resource + 1]; ++i) {
+            const Use& use = schedule_.uses[i];
+            live.end = std::max(live.end, clock(use.slot)[queue]);
+            const std::uint32_t position = schedule_.position[use.slot];
+            const auto begin = std::partition_point(
+                slots.begin(), slots.end(), [&](std::uint32_t slot) { return clock(slot)[use.queue] <= position; });
+            live.begin = std::min(live.begin, static_cast<std::uint32_t>(begin - slots.begin()));
+        }
+        return live;
+    }
+    [[nodiscard]] const std::uint32_t* clock(std::uint32_t slot) const {
+        return schedule_.clocks.data() + std::size_t{slot} * queues_;
+    }
+
+    const Schedule& schedule_;
+    std::size_t queues_;
+    std::vector<std::uint32_t> ordered_before_; ///< so many passes of the queue happen before every use
+    std::vector<std::uint32_t> last_end_;       ///< position after the last use on the queue, 0 if there is none
+};
 
 VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
     return (value + alignment - 1) / alignment * alignment;
@@ -116,7 +165,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     Memory memory;
     memory.placements.resize(count);
     memory.takes_over.resize(count);
-    std::vector<Lifetime> lives(count);
+    Lifetimes lives(schedule, count);
     std::vector<std::uint32_t> candidates;
     for (std::uint32_t resource = 0; resource < count; ++resource) {
         const ResourceDesc& desc = graph.resources[resource];
@@ -142,7 +191,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             placement.kind = PlacementKind::history;
         } else {
             placement.kind = PlacementKind::heap;
-            lives[resource] = lifetime_of(schedule, resource);
+            lives.add(resource);
             candidates.push_back(resource);
         }
     }
@@ -189,8 +238,8 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         blocked.clear();
         for (const std::uint32_t other : placed) {
             const Placement& placement = memory.placements[other];
-            const bool ordered = aliasing && (entirely_before(schedule, lives[other], lives[resource]) ||
-                                              entirely_before(schedule, lives[resource], lives[other]));
+            const bool ordered =
+                aliasing && (lives.entirely_before(other, resource) || lives.entirely_before(resource, other));
             if (placement.heap == heap && !ordered) {
                 blocked.push_back({placement.offset_bytes, placement.offset_bytes + placement.size_bytes});
             }
@@ -211,7 +260,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             const bool overlap = a != b && mine.heap == other.heap &&
                                  other.offset_bytes < mine.offset_bytes + mine.size_bytes &&
                                  mine.offset_bytes < other.offset_bytes + other.size_bytes;
-            if (overlap && entirely_before(schedule, lives[a], lives[b])) {
+            if (overlap && lives.entirely_before(a, b)) {
                 memory.takes_over[b].push_back(a);
             }
         }
@@ -219,13 +268,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             mine.shares_with = memory.takes_over[b].front();
         }
     }
-    for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
-        VkDeviceSize live = 0;
-        for (const std::uint32_t resource : placed) {
-            live += contains(schedule, lives[resource], slot) ? memory.placements[resource].size_bytes : 0;
-        }
-        memory.largest_live_set_bytes = std::max(memory.largest_live_set_bytes, live);
-    }
+    memory.largest_live_set_bytes = lives.largest_live_set(placed, memory.placements);
     return memory;
 }
 
