@@ -4,6 +4,7 @@
 // O(resources^2).
 #include <algorithm>
 #include <span>
+#include <tuple>
 
 #include "rendergraph/stages.hpp"
 
@@ -157,6 +158,28 @@ VkDeviceSize best_gap(std::vector<Block>& blocked, VkDeviceSize size, VkDeviceSi
     return best_size == ~VkDeviceSize{0} || fits_at_end ? offset : best;
 }
 
+/// Calls `f(a, b)` once for every two resources with bytes in common; sorts `placed` by heap and offset.
+/// O(resources log resources + calls).
+template <typename F>
+void for_each_overlap(std::vector<std::uint32_t>& placed, std::span<const Placement> placements, F&& f) {
+    std::sort(placed.begin(), placed.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const Placement& left = placements[a];
+        const Placement& right = placements[b];
+        return std::tie(left.heap, left.offset_bytes, a) < std::tie(right.heap, right.offset_bytes, b);
+    });
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        const Placement& low = placements[placed[i]];
+        const VkDeviceSize end = low.offset_bytes + low.size_bytes;
+        for (std::size_t k = i + 1; k < placed.size(); ++k) {
+            const Placement& high = placements[placed[k]];
+            if (high.heap != low.heap || high.offset_bytes >= end) {
+                break;
+            }
+            f(placed[i], placed[k]);
+        }
+    }
+}
+
 } // namespace
 
 Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedule& schedule,
@@ -252,21 +275,17 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         memory.unaliased_bytes += size;
         placed.push_back(resource);
     }
-    std::sort(placed.begin(), placed.end());
-    for (const std::uint32_t b : placed) {
-        Placement& mine = memory.placements[b];
-        for (const std::uint32_t a : placed) {
-            const Placement& other = memory.placements[a];
-            const bool overlap = a != b && mine.heap == other.heap &&
-                                 other.offset_bytes < mine.offset_bytes + mine.size_bytes &&
-                                 mine.offset_bytes < other.offset_bytes + other.size_bytes;
-            if (overlap && lives.entirely_before(a, b)) {
-                memory.takes_over[b].push_back(a);
-            }
+    for_each_overlap(placed, memory.placements, [&](std::uint32_t a, std::uint32_t b) {
+        if (lives.entirely_before(a, b)) {
+            memory.takes_over[b].push_back(a);
+        } else if (lives.entirely_before(b, a)) {
+            memory.takes_over[a].push_back(b);
         }
-        if (!memory.takes_over[b].empty()) {
-            mine.shares_with = memory.takes_over[b].front();
-        }
+    });
+    for (const std::uint32_t resource : placed) {
+        std::vector<std::uint32_t>& before = memory.takes_over[resource];
+        std::sort(before.begin(), before.end());
+        memory.placements[resource].shares_with = before.empty() ? none : before.front();
     }
     memory.largest_live_set_bytes = lives.largest_live_set(placed, memory.placements);
     return memory;
