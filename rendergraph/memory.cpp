@@ -1,12 +1,11 @@
 // Placing transients in memory, shared where the partial order allows it.
 // In: the schedule's partial order, sizes and alignments. Out: heap and offset of each. Invariant: resources whose
-// bytes overlap have all accesses of one before all accesses of the other. Size-descending, best-fitting gap.
-// O(resources^2).
+// bytes overlap have all accesses of one before all accesses of the other.
+// O(uses x log + conflicts x log): see memory_types.hpp.
 #include <algorithm>
-#include <span>
-#include <tuple>
+#include <map>
 
-#include "rendergraph/stages.hpp"
+#include "rendergraph/memory_types.hpp"
 
 namespace tyndall::rg {
 
@@ -38,146 +37,91 @@ MemoryRequirements estimate_memory(const GraphDesc& graph) {
 namespace stages {
 namespace {
 
-/// When resources are used, by resource and queue, in numbers of passes of that queue.
-class Lifetimes {
-public:
-    Lifetimes(const Schedule& schedule, std::size_t resources)
-        : schedule_(schedule), queues_(schedule.queue_count), ordered_before_(resources * queues_, 0),
-          last_end_(resources * queues_, 0) {}
-
-    /// O(uses of the resource x queues).
-    void add(std::uint32_t resource) {
-        std::uint32_t* before = ordered_before_.data() + resource * queues_;
-        std::uint32_t* end = last_end_.data() + resource * queues_;
-        std::fill_n(before, queues_, none);
-        for (std::uint32_t i = schedule_.first_use[resource]; i < schedule_.first_use[resource + 1]; ++i) {
-            const Use& use = schedule_.uses[i];
-            const std::uint32_t position = schedule_.position[use.slot];
-            for (std::uint32_t q = 0; q < queues_; ++q) {
-                before[q] = std::min(before[q], q == use.queue ? position : clock(use.slot)[q]);
-            }
-            end[use.queue] = std::max(end[use.queue], position + 1);
-        }
-    }
-
-    /// Every use of `a` happens before every use of `b`. O(queues).
-    [[nodiscard]] bool entirely_before(std::uint32_t a, std::uint32_t b) const {
-        for (std::size_t q = 0; q < queues_; ++q) {
-            if (last_end_[a * queues_ + q] > ordered_before_[b * queues_ + q]) {
-                return false;
-            }
-        }
-        return true;
-    }
-
-    /// The most bytes of `placed` that are live at one slot: used before or at it, and after or at it.
-    /// O((uses + resources log slots) x queues).
-    [[nodiscard]] VkDeviceSize largest_live_set(std::span<const std::uint32_t> placed,
-                                                std::span<const Placement> placements) const {
-        std::vector<std::vector<std::uint32_t>> slots(queues_); // by queue, in order
-        for (std::uint32_t slot = 0; slot < schedule_.order.size(); ++slot) {
-            slots[schedule_.queue[slot]].push_back(slot);
-        }
-        VkDeviceSize largest = 0;
-        std::vector<VkDeviceSize> begins; // by position: bytes that become live there
-        std::vector<VkDeviceSize> ends;   // and that were live up to there
-        for (std::uint32_t q = 0; q < queues_; ++q) {
-            begins.assign(slots[q].size() + 1, 0);
-            ends.assign(slots[q].size() + 1, 0);
-            for (const std::uint32_t resource : placed) {
-                const auto [begin, end] = live_positions(resource, q, slots[q]);
-                if (begin < end) {
-                    begins[begin] += placements[resource].size_bytes;
-                    ends[end] += placements[resource].size_bytes;
-                }
-            }
-            VkDeviceSize live = 0;
-            for (std::size_t position = 0; position < slots[q].size(); ++position) {
-                live += begins[position];
-                live -= ends[position];
-                largest = std::max(largest, live);
-            }
-        }
-        return largest;
-    }
-
-private:
-    struct Positions {
-        std::uint32_t begin;
-        std::uint32_t end;
-    };
-    /// Clocks only grow along a queue, so the slots where a resource is live are neighbours.
-    [[nodiscard]] Positions live_positions(std::uint32_t resource, std::uint32_t queue,
-                                           const std::vector<std::uint32_t>& slots) const {
-        Positions live{none, 0};
-        for (std::uint32_t i = schedule_.first_use[resource]; i < schedule_.first_use[resource + 1]; ++i) {
-            const Use& use = schedule_.uses[i];
-            live.end = std::max(live.end, clock(use.slot)[queue]);
-            const std::uint32_t position = schedule_.position[use.slot];
-            const auto begin = std::partition_point(
-                slots.begin(), slots.end(), [&](std::uint32_t slot) { return clock(slot)[use.queue] <= position; });
-            live.begin = std::min(live.begin, static_cast<std::uint32_t>(begin - slots.begin()));
-        }
-        return live;
-    }
-    [[nodiscard]] const std::uint32_t* clock(std::uint32_t slot) const {
-        return schedule_.clocks.data() + std::size_t{slot} * queues_;
-    }
-
-    const Schedule& schedule_;
-    std::size_t queues_;
-    std::vector<std::uint32_t> ordered_before_; ///< so many passes of the queue happen before every use
-    std::vector<std::uint32_t> last_end_;       ///< position after the last use on the queue, 0 if there is none
-};
-
 VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
     return (value + alignment - 1) / alignment * alignment;
 }
 
-struct Block {
-    VkDeviceSize begin;
-    VkDeviceSize end;
-};
-
-/// Offset of the smallest gap between `blocked` blocks that fits, else the first free offset behind them all.
-VkDeviceSize best_gap(std::vector<Block>& blocked, VkDeviceSize size, VkDeviceSize alignment, VkDeviceSize heap_size) {
-    std::sort(blocked.begin(), blocked.end(), [](const Block& a, const Block& b) { return a.begin < b.begin; });
-    VkDeviceSize cursor = 0;
-    VkDeviceSize best = 0;
-    VkDeviceSize best_size = ~VkDeviceSize{0};
-    for (const Block& block : blocked) {
-        const VkDeviceSize offset = align_up(cursor, alignment);
-        if (offset + size <= block.begin && block.begin - cursor < best_size) {
-            best = offset;
-            best_size = block.begin - cursor;
-        }
-        cursor = std::max(cursor, block.end);
+/// The heap of a memory type; made when it is new.
+std::uint32_t heap_of(std::vector<Heap>& heaps, std::uint32_t memory_type_bits) {
+    std::uint32_t heap = 0;
+    while (heap < heaps.size() && heaps[heap].memory_type_bits != memory_type_bits) {
+        ++heap;
     }
-    const VkDeviceSize offset = align_up(cursor, alignment);
-    const bool fits_at_end = offset + size <= heap_size && heap_size - cursor < best_size;
-    return best_size == ~VkDeviceSize{0} || fits_at_end ? offset : best;
+    if (heap == heaps.size()) {
+        heaps.push_back({memory_type_bits, 0});
+    }
+    return heap;
 }
 
-/// Calls `f(a, b)` once for every two resources with bytes in common; sorts `placed` by heap and offset.
-/// O(resources log resources + calls).
-template <typename F>
-void for_each_overlap(std::vector<std::uint32_t>& placed, std::span<const Placement> placements, F&& f) {
-    std::sort(placed.begin(), placed.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const Placement& left = placements[a];
-        const Placement& right = placements[b];
-        return std::tie(left.heap, left.offset_bytes, a) < std::tie(right.heap, right.offset_bytes, b);
-    });
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        const Placement& low = placements[placed[i]];
-        const VkDeviceSize end = low.offset_bytes + low.size_bytes;
-        for (std::size_t k = i + 1; k < placed.size(); ++k) {
-            const Placement& high = placements[placed[k]];
-            if (high.heap != low.heap || high.offset_bytes >= end) {
-                break;
+/// One behind the other.
+Packing pack_without_sharing(std::span<const Block> blocks, std::uint32_t heap_count) {
+    Packing packing{std::vector<VkDeviceSize>(blocks.size()), std::vector<VkDeviceSize>(heap_count, 0)};
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        VkDeviceSize& heap_bytes = packing.heap_bytes[blocks[i].heap];
+        packing.offset_bytes[i] = align_up(heap_bytes, blocks[i].alignment);
+        heap_bytes = packing.offset_bytes[i] + blocks[i].size_bytes;
+    }
+    return packing;
+}
+
+/// For each block, in order of first slot, those that lie in its bytes until then. Whoever lay there before them is
+/// reached through them.
+void find_owners_before(std::span<const Block> blocks, const Packing& packing, Memory& memory) {
+    struct Owned {
+        VkDeviceSize end;
+        std::uint32_t resource;
+    };
+    std::vector<std::map<VkDeviceSize, Owned>> heaps(packing.heap_bytes.size()); // by begin
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        std::map<VkDeviceSize, Owned>& owners = heaps[blocks[i].heap];
+        const VkDeviceSize begin = packing.offset_bytes[i];
+        const VkDeviceSize end = begin + blocks[i].size_bytes;
+        std::vector<std::uint32_t>& before = memory.takes_over[blocks[i].resource];
+        auto found = owners.lower_bound(begin);
+        if (found != owners.begin() && std::prev(found)->second.end > begin) {
+            --found;
+        }
+        while (found != owners.end() && found->first < end) {
+            const auto [owned_begin, owned] = *found;
+            before.push_back(owned.resource);
+            found = owners.erase(found);
+            if (owned_begin < begin) {
+                owners.emplace(owned_begin, Owned{begin, owned.resource});
             }
-            f(placed[i], placed[k]);
+            if (owned.end > end) {
+                found = owners.emplace(end, Owned{owned.end, owned.resource}).first;
+            }
+        }
+        owners.emplace(begin, Owned{end, blocks[i].resource});
+        std::sort(before.begin(), before.end());
+        before.erase(std::unique(before.begin(), before.end()), before.end());
+    }
+}
+
+/// The most bytes that are live at one pass: between two uses of each, as the partial order has it.
+VkDeviceSize largest_live_set(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives) {
+    const std::uint32_t queues = schedule.queue_count;
+    const std::size_t slots = schedule.order.size() + 1;
+    std::vector<VkDeviceSize> change(slots * queues, 0); // wraps where bytes leave
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        for (std::uint32_t q = 0; q < queues; ++q) {
+            const std::uint32_t begin = lives.live_begin[i * queues + q];
+            const std::uint32_t end = lives.live_end[i * queues + q];
+            if (begin < end) {
+                change[q * slots + begin] += blocks[i].size_bytes;
+                change[q * slots + end] -= blocks[i].size_bytes;
+            }
         }
     }
+    VkDeviceSize largest = 0;
+    for (std::uint32_t q = 0; q < queues; ++q) {
+        VkDeviceSize live = 0;
+        for (std::size_t position = 0; position < slots; ++position) {
+            live += change[q * slots + position];
+            largest = std::max(largest, live);
+        }
+    }
+    return largest;
 }
 
 } // namespace
@@ -188,8 +132,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     Memory memory;
     memory.placements.resize(count);
     memory.takes_over.resize(count);
-    Lifetimes lives(schedule, count);
-    std::vector<std::uint32_t> candidates;
+    std::vector<Block> blocks;
     for (std::uint32_t resource = 0; resource < count; ++resource) {
         const ResourceDesc& desc = graph.resources[resource];
         Placement& placement = memory.placements[resource];
@@ -214,8 +157,14 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             placement.kind = PlacementKind::history;
         } else {
             placement.kind = PlacementKind::heap;
-            lives.add(resource);
-            candidates.push_back(resource);
+            const MemoryRequirement& need = requirements.of_resource[resource];
+            // Buffers and images never share a page of bufferImageGranularity: both keep to whole pages.
+            blocks.push_back({.resource = resource,
+                              .heap = heap_of(memory.heaps, need.memory_type_bits),
+                              .size_bytes = align_up(need.size_bytes, requirements.buffer_image_granularity),
+                              .alignment = std::max(need.alignment, requirements.buffer_image_granularity),
+                              .first_slot = schedule.uses[first].slot,
+                              .last_slot = schedule.uses[end - 1].slot});
         }
     }
     for (const AccessDesc& access : graph.accesses) {
@@ -241,53 +190,29 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         }
     }
 
-    std::stable_sort(candidates.begin(), candidates.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return requirements.of_resource[a].size_bytes > requirements.of_resource[b].size_bytes;
-    });
-    std::vector<std::uint32_t> placed;
-    std::vector<Block> blocked;
-    for (const std::uint32_t resource : candidates) {
-        const MemoryRequirement& need = requirements.of_resource[resource];
-        // Buffers and images never share a page of bufferImageGranularity: both keep to whole pages.
-        const VkDeviceSize alignment = std::max(need.alignment, requirements.buffer_image_granularity);
-        const VkDeviceSize size = align_up(need.size_bytes, requirements.buffer_image_granularity);
-        std::uint32_t heap = 0;
-        while (heap < memory.heaps.size() && memory.heaps[heap].memory_type_bits != need.memory_type_bits) {
-            ++heap;
-        }
-        if (heap == memory.heaps.size()) {
-            memory.heaps.push_back({need.memory_type_bits, 0});
-        }
-        blocked.clear();
-        for (const std::uint32_t other : placed) {
-            const Placement& placement = memory.placements[other];
-            const bool ordered =
-                aliasing && (lives.entirely_before(other, resource) || lives.entirely_before(resource, other));
-            if (placement.heap == heap && !ordered) {
-                blocked.push_back({placement.offset_bytes, placement.offset_bytes + placement.size_bytes});
-            }
-        }
-        Placement& placement = memory.placements[resource];
-        placement.heap = heap;
-        placement.size_bytes = size;
-        placement.offset_bytes = best_gap(blocked, size, alignment, memory.heaps[heap].size_bytes);
-        memory.heaps[heap].size_bytes = std::max(memory.heaps[heap].size_bytes, placement.offset_bytes + size);
-        memory.unaliased_bytes += size;
-        placed.push_back(resource);
+    std::stable_sort(blocks.begin(), blocks.end(),
+                     [](const Block& a, const Block& b) { return a.first_slot < b.first_slot; });
+    const auto heap_count = static_cast<std::uint32_t>(memory.heaps.size());
+    const Lives lives = find_lives(schedule, blocks);
+    const Packing packing = aliasing ? pack(blocks, find_conflicts(schedule, blocks, lives), heap_count)
+                                     : pack_without_sharing(blocks, heap_count);
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        Placement& placement = memory.placements[blocks[i].resource];
+        placement.heap = blocks[i].heap;
+        placement.size_bytes = blocks[i].size_bytes;
+        placement.offset_bytes = packing.offset_bytes[i];
+        memory.unaliased_bytes += blocks[i].size_bytes;
     }
-    for_each_overlap(placed, memory.placements, [&](std::uint32_t a, std::uint32_t b) {
-        if (lives.entirely_before(a, b)) {
-            memory.takes_over[b].push_back(a);
-        } else if (lives.entirely_before(b, a)) {
-            memory.takes_over[a].push_back(b);
-        }
-    });
-    for (const std::uint32_t resource : placed) {
-        std::vector<std::uint32_t>& before = memory.takes_over[resource];
-        std::sort(before.begin(), before.end());
-        memory.placements[resource].shares_with = before.empty() ? none : before.front();
+    for (std::uint32_t heap = 0; heap < heap_count; ++heap) {
+        memory.heaps[heap].size_bytes = packing.heap_bytes[heap];
     }
-    memory.largest_live_set_bytes = lives.largest_live_set(placed, memory.placements);
+    find_owners_before(blocks, packing, memory);
+    for (const Block& block : blocks) {
+        if (const std::vector<std::uint32_t>& before = memory.takes_over[block.resource]; !before.empty()) {
+            memory.placements[block.resource].shares_with = before.front();
+        }
+    }
+    memory.largest_live_set_bytes = largest_live_set(schedule, blocks, lives);
     return memory;
 }
 

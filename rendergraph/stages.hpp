@@ -142,11 +142,12 @@ struct Memory {
     std::vector<Heap> heaps;
     VkDeviceSize unaliased_bytes = 0;
     VkDeviceSize largest_live_set_bytes = 0;
-    /// By resource: those whose bytes it takes over (all whose accesses happen before its own and that overlap it).
+    /// By resource: those that lay in its bytes last. All their accesses happen before its own, and theirs after those
+    /// of whoever lay there before them.
     std::vector<std::vector<std::uint32_t>> takes_over;
 };
 /// Two resources may share bytes only if every access of one happens before every access of the other in the schedule's
-/// partial order. Size-descending, best-fitting gap. O(resources^2).
+/// partial order. The lowest of several greedy packings.
 [[nodiscard]] Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedule& schedule,
                            const MemoryRequirements& requirements, bool aliasing);
 

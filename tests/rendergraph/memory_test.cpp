@@ -1,4 +1,6 @@
 // Memory sharing: never between resources whose uses the plan leaves unordered, and always when it pays.
+#include <algorithm>
+#include <cstdio>
 #include <random>
 
 #include "tests/rendergraph/frames.hpp"
@@ -159,6 +161,62 @@ TEST(Memory, RandomChainsStayOrderedAndNearTheLowerBound) {
                 }
             }
         }
+    }
+}
+
+/// Bytes of the plan over its lower bound, sorted, for frames of `passes` passes whose sizes vary by a factor of 1,000.
+std::vector<double> ratios_to_the_bound(std::uint32_t frames, std::uint32_t passes, const QueueTopology& topology) {
+    std::vector<double> ratios;
+    for (std::uint32_t seed = 1; seed <= frames; ++seed) {
+        std::mt19937 random(seed);
+        GraphBuilder graph;
+        Buffer out = graph.import_buffer("out", {.size_bytes = 64}, {.has_final = true});
+        std::vector<Buffer> buffers;
+        std::vector<Image> images;
+        for (std::uint32_t i = 0; i < passes; ++i) {
+            PassBuilder pass = graph.add_pass("pass " + std::to_string(i), PassKind::compute);
+            for (std::uint32_t k = 0; k < 2; ++k) {
+                const std::size_t back = random() % 5;
+                if (random() % 2 == 0 && buffers.size() > back) {
+                    pass.reads(buffers[buffers.size() - 1 - back], Access::storage_compute);
+                } else if (images.size() > back) {
+                    pass.reads(images[images.size() - 1 - back], Access::sampled_compute);
+                }
+            }
+            const auto size = static_cast<std::uint32_t>((8U << (random() % 6)) + random() % 8);
+            if (random() % 2 == 0) {
+                buffers.push_back(
+                    graph.create_buffer("buffer " + std::to_string(i), {.size_bytes = VkDeviceSize{size} * size * 4}));
+                pass.writes(buffers.back(), Access::storage_compute);
+            } else {
+                images.push_back(graph.create_image("image " + std::to_string(i),
+                                                    {.format = VK_FORMAT_R32_SFLOAT, .extent = {size, size, 1}}));
+                pass.writes(images.back(), Access::storage_compute);
+            }
+            pass.has_side_effect("keeps it");
+            if (random() % 4 == 0) {
+                pass.on_queue(QueueWish::async_compute);
+            }
+        }
+        graph.add_pass("last", PassKind::compute).writes(out, Access::storage_compute);
+        const DeclaredGraph declared = graph.finish();
+        const PlanStatistics& statistics = compiled(declared.desc, topology).statistics;
+        ratios.push_back(static_cast<double>(statistics.transient_bytes) /
+                         static_cast<double>(statistics.largest_live_set_bytes));
+    }
+    std::sort(ratios.begin(), ratios.end());
+    return ratios;
+}
+
+TEST(Memory, PlansOfBuffersAndImagesAreNearTheLowerBound) {
+    for (const std::uint32_t passes : {12U, 40U, 150U}) {
+        const std::vector<double> one = ratios_to_the_bound(300, passes, one_queue());
+        const std::vector<double> two = ratios_to_the_bound(300, passes, two_queues());
+        std::printf("%u passes: transient bytes over the largest live set, median and 99th percentile: one queue %.3f "
+                    "%.3f, two queues %.3f %.3f\n",
+                    passes, one[150], one[297], two[150], two[297]);
+        EXPECT_LE(one[150], 1.02);
+        EXPECT_LE(one[297], passes <= 40 ? 1.2 : 1.25);
     }
 }
 

@@ -1,0 +1,66 @@
+// What placing transients works on: when resources live, which of them exclude each other, where they lie. Internal.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rendergraph/stages.hpp"
+
+namespace tyndall::rg::stages {
+
+/// A resource to be placed.
+struct Block {
+    std::uint32_t resource = none;
+    std::uint32_t heap = 0;
+    VkDeviceSize size_bytes = 0;
+    VkDeviceSize alignment = 1;
+    std::uint32_t first_slot = 0;
+    std::uint32_t last_slot = 0;
+};
+
+/// Where blocks live in the schedule's partial order, by block x queue, as positions on the queue.
+struct Lives {
+    std::uint32_t queue_count = 1;
+    std::vector<std::uint32_t> first;      ///< of its first use, `none` if the queue does not use it
+    std::vector<std::uint32_t> after;      ///< the first position that comes after all of its uses
+    std::vector<std::uint32_t> live_begin; ///< the first position that comes after, or is, one of its uses
+    std::vector<std::uint32_t> live_end;   ///< one past the last position that comes before, or is, one of its uses
+
+    /// Every use of `a` happens before every use of `b`.
+    [[nodiscard]] bool entirely_before(std::uint32_t a, std::uint32_t b) const {
+        for (std::uint32_t q = 0; q < queue_count; ++q) {
+            const std::uint32_t begin = first[b * queue_count + q];
+            if (begin != none && begin < after[a * queue_count + q]) {
+                return false;
+            }
+        }
+        return true;
+    }
+};
+/// O(uses x queues x log slots).
+[[nodiscard]] Lives find_lives(const Schedule& schedule, std::span<const Block> blocks);
+
+/// For each block those that may not share bytes with it, in rows: `of(block)`.
+struct Conflicts {
+    std::vector<std::uint32_t> first; ///< blocks + 1 entries into `with`
+    std::vector<std::uint32_t> with;
+    [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t block) const {
+        return {with.data() + first[block], first[block + 1] - first[block]};
+    }
+};
+/// `blocks` by first slot. A sweep that forgets a block once all that is still to come lies behind it, so that the cost
+/// follows the number of conflicts and not the square of the blocks.
+[[nodiscard]] Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives);
+
+struct Packing {
+    std::vector<VkDeviceSize> offset_bytes; ///< by block
+    std::vector<VkDeviceSize> heap_bytes;   ///< by heap
+    VkDeviceSize total_bytes = 0;
+};
+/// Tries several greedy orders and keeps the lowest total, the first of equals: by size, descending, each into the
+/// smallest gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, and by
+/// first slot. O(conflicts x log).
+[[nodiscard]] Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count);
+
+} // namespace tyndall::rg::stages
