@@ -26,7 +26,9 @@ function(tyndall_install_library name folder)
     set(TYNDALL_INSTALLED_COMPONENTS ${TYNDALL_INSTALLED_COMPONENTS} ${name} PARENT_SCOPE)
 endfunction()
 
-tyndall_install_library(rendergraph rendergraph PRIVATE_HEADERS stages.hpp *_state.hpp *_types.hpp)
+tyndall_install_library(rendergraph rendergraph
+                        PRIVATE_HEADERS stages.hpp *_state.hpp *_types.hpp assign.hpp queue_model.hpp search.hpp variants.hpp
+                                        verify_order.hpp verify_replay.hpp vulkan_names.hpp)
 tyndall_install_library(volumetrics features/volumetrics
                         PRIVATE_HEADERS *_state.hpp host_buffers.hpp pipelines.hpp shaders.hpp)
 tyndall_install_library(engine engine PRIVATE_HEADERS *_state.hpp gltf_*.hpp)
