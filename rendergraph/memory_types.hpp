@@ -59,8 +59,8 @@ struct Packing {
     VkDeviceSize total_bytes = 0;
 };
 /// Tries several greedy orders and keeps the lowest total, the first of equals: by size, descending, each into the
-/// smallest gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, and by
-/// first slot. O(conflicts x log).
+/// smallest gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, and
+/// by first slot. O(conflicts x log).
 [[nodiscard]] Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count);
 
 } // namespace tyndall::rg::stages

@@ -12,6 +12,17 @@
 namespace tyndall::rg::stages {
 namespace {
 
+/// Can a queue of these capabilities have all of these stages?
+bool queue_has(std::uint8_t capabilities, VkPipelineStageFlags2 stages) {
+    constexpr VkPipelineStageFlags2 on_any_queue = VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_HOST_BIT |
+                                                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT |
+                                                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
+    constexpr VkPipelineStageFlags2 of_compute =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT;
+    const VkPipelineStageFlags2 there = (capabilities & can_compute) != 0 ? on_any_queue | of_compute : on_any_queue;
+    return (capabilities & can_graphics) != 0 || (stages & ~there) == 0;
+}
+
 class Synchroniser {
 public:
     Synchroniser(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells, const Schedule& schedule,
@@ -234,7 +245,9 @@ private:
     }
 
     void add_sources(Dependency& d, const Before& before, std::uint32_t consumer_queue) const {
-        d.src_stages = before.host_stages;
+        // What the host did on another queue reaches this one through a semaphore, which all commands here chain to.
+        const bool nameable = queue_has(topology_.queues[consumer_queue].capabilities, before.host_stages);
+        d.src_stages = nameable ? before.host_stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
         d.src_access = before.host_access & any_write;
         d.local_stages = d.src_stages;
         d.local_access = d.src_access;
