@@ -11,7 +11,6 @@
 
 namespace tyndall::rg::stages {
 namespace {
-
 /// Can a queue of these capabilities have all of these stages?
 bool queue_has(std::uint8_t capabilities, VkPipelineStageFlags2 stages) {
     constexpr VkPipelineStageFlags2 on_any_queue = VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_HOST_BIT |
