@@ -78,7 +78,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
     const QueueChoices choices = choose_queues(graph, topology, kept, options.async);
     const Work work = collect_work(flow, order, kept, choices, topology, costs);
     Decided decided =
-        decide(work, choices, options.async, costs,
+        decide(work, choices, options, costs,
                previous != nullptr ? previous_schedule(work, topology, passes_hash, *previous) : ItemSchedule{});
     const Schedule sched = schedule_what_pays(graph, topology, cells, flow, work, choices, costs, decided);
     const Memory placed = place(graph, topology, sched, memory, options.aliasing);

@@ -3,6 +3,7 @@
 // scheduler moves away from home makes the frame shorter in the queue model, by the threshold when it first moves; it
 // stays while it still gains, and gives way only to what gains the threshold over it. O(items log items + edges).
 #include <algorithm>
+#include <numeric>
 
 #include "rendergraph/assign.hpp"
 
@@ -37,10 +38,23 @@ std::int64_t threshold_ns(const Work& work, const Costs& costs, std::int64_t ser
     return std::max({costs.threshold_ns, serial_ns * share / permille, deviation_ns(work, costs)});
 }
 
+/// The same queues, each in the order of the items, which is that of declaration where the data allow it.
+ItemSchedule in_item_order(const ItemSchedule& schedule) {
+    std::vector<std::uint32_t> queue_of(schedule.items.size());
+    for (std::size_t i = 0; i < schedule.items.size(); ++i) {
+        queue_of[schedule.items[i]] = schedule.queue[i];
+    }
+    ItemSchedule ordered{.queue = std::move(queue_of)};
+    ordered.items.resize(ordered.queue.size());
+    std::iota(ordered.items.begin(), ordered.items.end(), 0U);
+    return ordered;
+}
+
 } // namespace
 
-Decided decide(const Work& work, const QueueChoices& choices, bool async, const Costs& costs,
-               const ItemSchedule& previous) {
+Decided decide(const Work& work, const QueueChoices& choices, const CompileOptions& options, const Costs& costs,
+               const ItemSchedule& earlier) {
+    const ItemSchedule previous = options.reordering ? earlier : in_item_order(earlier);
     Decided out;
     AsyncDecision& decision = out.decision;
     out.home = at_home(work);
@@ -63,7 +77,7 @@ Decided decide(const Work& work, const QueueChoices& choices, bool async, const 
     if (work.queue_count < 2) {
         return stay_home(DecisionReason::one_queue);
     }
-    if (!async) {
+    if (!options.async) {
         return stay_home(DecisionReason::switched_off);
     }
     if (!choices.any_free) {
@@ -79,6 +93,9 @@ Decided decide(const Work& work, const QueueChoices& choices, bool async, const 
         return stay_home(DecisionReason::ceiling_below_threshold);
     }
     ItemSchedule list = list_schedule(work, urgency, costs);
+    if (!options.reordering) {
+        list = in_item_order(list);
+    }
     const std::int64_t list_ns = makespan_ns(work, list, costs);
     const bool list_pays = out.home_ns - list_ns >= least_gain;
     if (previous_gains && previous_ns - std::min(list_ns, out.home_ns) < least_gain) {

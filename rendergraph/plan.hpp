@@ -42,6 +42,7 @@ struct CompileOptions {
     bool culling = true;
     bool aliasing = true;
     bool async = true;          ///< false: everything on the graphics queue
+    bool reordering = true;     ///< false: each queue keeps the order of declaration where the data allow it
     bool full_barriers = false; ///< true: every dependency waits for all commands and all memory
 };
 

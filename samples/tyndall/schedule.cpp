@@ -64,6 +64,7 @@ constexpr Switch compile_switches[] = {
     {"serial", [](rg::CompileOptions& options) { options.async = false; }},
     {"no-aliasing", [](rg::CompileOptions& options) { options.aliasing = false; }},
     {"full-barriers", [](rg::CompileOptions& options) { options.full_barriers = true; }},
+    {"no-reordering", [](rg::CompileOptions& options) { options.reordering = false; }},
     {"no-culling", [](rg::CompileOptions& options) { options.culling = false; }},
 };
 /// Filling transients with garbage is a switch of the executor: a plan is the same with it.

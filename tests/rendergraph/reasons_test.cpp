@@ -1,9 +1,11 @@
 // Nothing in a plan lacks a reason, and each reason is one that a reader can check.
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
 
 #include "rendergraph/explain.hpp"
+#include "rendergraph/json.hpp"
 #include "rendergraph/optimality.hpp"
 #include "rendergraph/reasons.hpp"
 #include "tests/rendergraph/any_frame.hpp"
@@ -117,10 +119,30 @@ TEST(Reasons, NothingInAPlanLacksOne) {
     EXPECT_GT(shared, 0U);
 }
 
+TEST(Reasons, OfTheCorpusAndOfTheSampleFrames) {
+    std::size_t frames = 0;
+    for (const char* folder : {TYNDALL_CORPUS_DIR, TYNDALL_SAMPLE_FRAMES}) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            SCOPED_TRACE(entry.path().string());
+            std::ifstream file(entry.path());
+            std::stringstream text;
+            text << file.rdbuf();
+            const auto frame = frame_from_json(text.str());
+            ASSERT_TRUE(frame) << to_text(frame.error());
+            const auto plan = compile(frame->graph, frame->topology, estimate_memory(frame->graph), {}, frame->costs);
+            ASSERT_TRUE(plan);
+            expect_all_reasons(frame->graph, *plan);
+            ++frames;
+        }
+    }
+    EXPECT_GT(frames, 3U);
+}
+
 TEST(Reasons, WhereEachOptimisationIsSwitchedOff) {
     const DeclaredGraph fog = fog_frame();
-    for (const CompileOptions& options : {CompileOptions{.culling = false}, CompileOptions{.aliasing = false},
-                                          CompileOptions{.async = false}, CompileOptions{.full_barriers = true}}) {
+    for (const CompileOptions& options :
+         {CompileOptions{.culling = false}, CompileOptions{.aliasing = false}, CompileOptions{.async = false},
+          CompileOptions{.reordering = false}, CompileOptions{.full_barriers = true}}) {
         expect_all_reasons(fog.desc, compiled(fog.desc, two_queues(), options));
     }
 }

@@ -123,6 +123,7 @@ TEST_F(Schedule, EachSwitchTurnsOneThingOff) {
     const std::string alone = schedule({frame, "--switch", "no-aliasing", "--switch", "serial"}).output;
     expect_in(alone, "transient memory 197.58 MiB, at least");
     expect_in(schedule({frame, "--switch", "full-barriers"}).output, "all commands (memory read|memory write)");
+    EXPECT_NE(schedule({frame, "--switch", "no-reordering"}).output, all);
     const ToolRun poison = schedule({frame, "--switch", "poison"});
     EXPECT_EQ(poison.output, all);
     expect_in(poison.errors, "note: poison");
