@@ -18,6 +18,9 @@ std::size_t overtakings(const GraphDesc& graph, const Plan& plan, const Plan& se
     std::vector<std::uint32_t> last(plan.topology.queues.size(), 0);
     std::size_t count = 0;
     for (const PlannedPass& pass : plan.passes) {
+        if (place[pass.pass] == none) {
+            continue; // a variant that the serial plan did not choose
+        }
         count += place[pass.pass] < last[pass.queue] ? 1 : 0;
         last[pass.queue] = std::max(last[pass.queue], place[pass.pass]);
     }
