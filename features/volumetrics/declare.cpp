@@ -222,7 +222,8 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
     const Settings& settings = frame->inputs.settings;
     const GridSettings& grid = settings.grid;
     const GroupShape group = row_group(grid.width, 32); // few columns: small groups keep all cores busy
-    const auto program = pipelines.compute(accumulation_shader(settings.storage), group);
+    const auto program = pipelines.compute(accumulation_shader(settings.storage, settings.error_estimate), group,
+                                           std::array{static_cast<std::uint32_t>(settings.integrator)});
     if (!program) {
         frame->volume.reset();
         return tl::unexpected(program.error());
@@ -236,12 +237,23 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
         .reads(frame->stages.density, Access::storage_compute)
         .reads(frame->volume->in_scattered, Access::storage_compute)
         .writes(accumulated, Access::storage_compute);
+    rg::Image estimate;
+    if (settings.error_estimate) {
+        estimate = graph.create_image(
+            "fog error estimate", {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {grid.width, grid.height, 1}});
+        pass.writes(estimate, Access::storage_compute);
+        frame->stages.error_estimate = estimate;
+    }
     pass.executes([=, dispatch = covering(*program, group, grid.width, grid.height, 1),
                    parameters = frame->parameter_buffer, density = frame->stages.density,
                    in_scattered = frame->volume->in_scattered](PassContext& ctx) {
-        run(ctx, dispatch,
-            std::array{ctx.uniform(0, parameters), ctx.storage(1, density), ctx.storage(2, in_scattered),
-                       ctx.storage(3, accumulated, array_view)});
+        std::array<Binding, 5> bindings{ctx.uniform(0, parameters), ctx.storage(1, density),
+                                        ctx.storage(2, in_scattered), ctx.storage(3, accumulated, array_view)};
+        std::size_t count = 4;
+        if (estimate.valid()) {
+            bindings[count++] = ctx.storage(4, estimate);
+        }
+        run(ctx, dispatch, std::span(bindings).first(count));
     });
     frame->volume->accumulated = accumulated;
     return {};

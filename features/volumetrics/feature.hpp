@@ -69,6 +69,8 @@ struct VolumeResources {
 struct StageResources {
     rg::Image density; ///< 3D: scattering coefficient and extinction, 1/m times VolumetricParameters::density_scale.x
     rg::Image esm;     ///< 2D array: ln of the mean of e^(k z), blurred
+    rg::Image
+        error_estimate; ///< 2D, rgba32f, a column of froxels each: absolute error of the stored radiance at the range
 };
 
 /// A thing that the frame does without.

@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -146,6 +149,24 @@ public:
             }
         }
     }
+    /// One of the names of `choices`.
+    template <typename Enum>
+    void read(const char* key, Enum& value, std::initializer_list<std::pair<std::string_view, Enum>> choices) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        const auto* name = json->get_ptr<const Json::string_t*>();
+        std::string names;
+        for (const auto& [choice, meaning] : choices) {
+            if (name != nullptr && *name == choice) {
+                value = meaning;
+                return;
+            }
+            names += (names.empty() ? "\"" : ", \"") + std::string(choice) + "\"";
+        }
+        complain(path_of(key), ("must be one of " + names).c_str());
+    }
     [[nodiscard]] std::string path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
 
 private:
@@ -221,6 +242,12 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
         s.read("jitter", settings.temporal.jitter);
     });
     root.read("storage", settings.storage);
+    root.read("integrator", settings.integrator,
+              {{"euler", Integrator::euler},
+               {"half_slice", Integrator::half_slice},
+               {"exponential", Integrator::exponential},
+               {"exponential_quadratic", Integrator::exponential_quadratic}});
+    root.read("error_estimate", settings.error_estimate);
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include <tl/expected.hpp>
 
 #include "features/volumetrics/error.hpp"
+#include "features/volumetrics/lighting_settings.hpp"
 
 namespace tyndall::volumetrics {
 
@@ -71,8 +72,10 @@ struct Settings {
     ShadowSettings shadow;
     TemporalSettings temporal;
     StorageFormat storage = StorageFormat::fp16;
-    bool clusters = true;       ///< false: every froxel visits every light
-    bool async_compute = false; ///< the compute passes ask for async compute; else the scheduler decides
+    Integrator integrator = Integrator::exponential;
+    bool error_estimate = false; ///< the integrator's own, beside the image (StageResources::error_estimate)
+    bool clusters = true;        ///< false: every froxel visits every light
+    bool async_compute = false;  ///< the compute passes ask for async compute; else the scheduler decides
 };
 
 /// The first value outside its domain, by its key in the fog file ("grid.range_m must be ...").

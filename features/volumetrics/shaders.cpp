@@ -2,8 +2,10 @@
 
 #include <array>
 
-#include "spirv/accumulation_fp16.h"
-#include "spirv/accumulation_fp32.h"
+#include "spirv/accumulation_fp16_e0.h"
+#include "spirv/accumulation_fp16_e1.h"
+#include "spirv/accumulation_fp32_e0.h"
+#include "spirv/accumulation_fp32_e1.h"
 #include "spirv/density_injection_fp16.h"
 #include "spirv/density_injection_fp32.h"
 #include "spirv/esm_blur.h"
@@ -58,7 +60,7 @@ constexpr ShaderBinding clustering_bindings[] = {
 constexpr ShaderBinding downsample_bindings[] = {{0, uniform}, {1, sampled}, {2, storage_image}};
 constexpr ShaderBinding blur_bindings[] = {{0, storage_image}, {1, storage_image}};
 constexpr ShaderBinding accumulation_bindings[] = {
-    {0, uniform}, {1, storage_image}, {2, storage_image}, {3, storage_image}};
+    {0, uniform}, {1, storage_image}, {2, storage_image}, {3, storage_image}, {4, storage_image}};
 constexpr ShaderBinding fog_bindings[] = {{0, uniform}, {1, sampled}, {2, sampled}};
 
 // Numbered as in froxel_lighting.comp; which of them a variant has follows from its index below.
@@ -145,10 +147,12 @@ ShaderCode froxel_lighting_shader(const LightingVariant& variant) {
             variant.history ? 4U : 0U};
 }
 
-ShaderCode accumulation_shader(StorageFormat storage) {
+ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate) {
     const bool fp16 = storage == StorageFormat::fp16;
-    return {"accumulation", fp16 ? std::span<const std::uint32_t>(accumulation_fp16) : accumulation_fp32,
-            accumulation_bindings};
+    const std::span<const std::uint32_t> code[] = {accumulation_fp32_e0, accumulation_fp32_e1, accumulation_fp16_e0,
+                                                   accumulation_fp16_e1};
+    return {"accumulation", code[(fp16 ? 2 : 0) + (error_estimate ? 1 : 0)],
+            std::span(accumulation_bindings).first(error_estimate ? 5 : 4)};
 }
 
 ShaderCode full_screen_shader() {

@@ -39,7 +39,7 @@ struct LightingVariant {
 [[nodiscard]] ShaderCode esm_blur_shader();
 /// Bindings that a variant lacks are left out of the list.
 [[nodiscard]] ShaderCode froxel_lighting_shader(const LightingVariant& variant);
-[[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage);
+[[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate);
 [[nodiscard]] ShaderCode full_screen_shader();
 [[nodiscard]] ShaderCode fog_on_opaque_shader();
 

@@ -1,21 +1,68 @@
 // Density and in-scattered radiance -> radiance toward the eye (rgb) and optical depth (a) at the N + 1 slice
 // boundaries, the eye's own (0, 0) included. Serial along each column.
 //
-// Per slice of ray length dt: x = sigma_t dt,  L += T dt j phi1(x),  T *= e^-x,  tau += x: exact for a constant
-// medium, no division by sigma, and a convex combination, so bounded by the brightest source whatever x.
+// Per slice of ray length dt, with mean extinction sigma_t and source j: x = sigma_t dt,  L += T dt j w(x),  T *= e^-x,
+// tau += x. The default, w = phi1, is exact for a constant medium, divides by no sigma and is a convex combination, so
+// bounded by the brightest source whatever x. The others are in integrators.glsl.
+//
+// ESTIMATE 1: what another scheme makes of the same samples is summed beside, and the difference at the last boundary
+// stored: against exponential_quadratic, and of that itself against exponential.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "volumetrics/froxel.glsl"
+#include "volumetrics/integrators.glsl"
 #include "volumetrics/interop.h"
 #include "volumetrics/storage.glsl"
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
+layout(constant_id = 3) const uint integrator = exponential;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform readonly restrict image3D density;
 layout(set = 0, binding = 2, VOLUME_FORMAT) uniform readonly restrict image3D in_scattered;
 layout(set = 0, binding = 3, VOLUME_FORMAT) uniform writeonly restrict image2DArray accumulated;
+#if ESTIMATE
+layout(set = 0, binding = 4, rgba32f) uniform writeonly restrict image2D error_estimate;
+const bool needs_parabola = true;
+#else
+const bool needs_parabola = integrator == exponential_quadratic;
+#endif
+const uint companion = integrator == exponential_quadratic ? exponential : exponential_quadratic;
+
+float density_of(ivec2 column, int k) { return imageLoad(density, ivec3(column, k)).a; }
+
+// Slice k of length dt; at the column's ends the density goes on as it begins.
+SliceNode slice_node(ivec2 column, int k, float dt) {
+    int last = int(u.volume.grid.z) - 1;
+    vec4 medium = imageLoad(density, ivec3(column, k));
+    float before = k > 0 ? density_of(column, k - 1) : 2.0 * medium.a - density_of(column, 1);
+    float after = k < last ? density_of(column, k + 1) : 2.0 * medium.a - density_of(column, last - 1);
+    SliceNode node;
+    node.source = medium.rgb * imageLoad(in_scattered, ivec3(column, k)).rgb;
+    node.extinction = medium.a;
+    node.x = medium.a * dt;
+    node.middle = optical_depth_of_middle(before, medium.a, after, u.volume.slice.z, dt);
+    return node;
+}
+
+// `mean_source` of slice k of length dt: the parabola goes through the middles of its neighbours, at an end of the
+// column through those of the next two slices.
+vec3 parabolic_source(ivec2 column, int k, float dt, SliceNode before, SliceNode here, SliceNode after,
+                      float attenuation) {
+    int last = int(u.volume.grid.z) - 1;
+    float ratio = u.volume.slice.z;
+    float a = before.middle - before.x;
+    float c = here.x + after.middle;
+    if (k == 0) {
+        before = slice_node(column, 2, dt * ratio * ratio);
+        a = here.x + after.x + before.middle;
+    } else if (k == last) {
+        after = slice_node(column, last - 2, dt / (ratio * ratio));
+        c = after.middle - after.x - before.x;
+    }
+    return mean_source(here, before, a, after, c, attenuation);
+}
 
 void main() {
     ivec2 column = ivec2(gl_GlobalInvocationID.xy);
@@ -24,21 +71,55 @@ void main() {
         return;
     }
     vec2 uv = uv_of_column(u.volume, vec2(column));
-    // Each slice is longer than the one before it by the same ratio.
+    // Each slice is longer than the one before it by the same ratio, which is kept as its difference to 1: a product of
+    // rounded ratios would drift.
+    float growth_of_slices = u.volume.scale.w / u.volume.scale.z;
     float dt = u.volume.slice.x * column_stretch(u.volume, uv) * u.density_scale.y;
     vec3 radiance = vec3(0.0);
+    vec3 companion_radiance = vec3(0.0);
     float tau = 0.0;
     float transmittance = 1.0;
     imageStore(accumulated, ivec3(column, 0), vec4(0.0));
-    for (int k = 0; k < grid.z; ++k) {
-        vec4 medium = imageLoad(density, ivec3(column, k));
-        vec3 source = medium.rgb * imageLoad(in_scattered, ivec3(column, k)).rgb;
-        float x = medium.a * dt;
-        float attenuation = exp(-x);
-        radiance += source * (transmittance * dt * phi1(x, attenuation));
-        tau += x;
-        transmittance *= attenuation;
-        imageStore(accumulated, ivec3(column, k + 1), storable(vec4(radiance, tau)));
-        dt *= u.volume.slice.z;
+    SliceNode before;
+    SliceNode here;
+    if (needs_parabola) {
+        here = slice_node(column, 0, dt);
+        before = here;
     }
+    for (int k = 0; k < grid.z; ++k) {
+        vec3 source;
+        vec3 parabola;
+        float x;
+        Attenuation attenuation;
+        if (needs_parabola) {
+            SliceNode after = here;
+            if (k + 1 < grid.z) {
+                after = slice_node(column, k + 1, dt * u.volume.slice.z);
+            }
+            source = here.source;
+            x = here.x;
+            attenuation = attenuation_of(x);
+            parabola = parabolic_source(column, k, dt, before, here, after, attenuation.across);
+            before = here;
+            here = after;
+        } else {
+            vec4 medium = imageLoad(density, ivec3(column, k));
+            source = medium.rgb * imageLoad(in_scattered, ivec3(column, k)).rgb;
+            x = medium.a * dt;
+            attenuation = attenuation_of(x);
+        }
+        float weight = transmittance * dt * mean_transmittance(integrator, x, attenuation);
+        radiance += (integrator == exponential_quadratic ? parabola : source) * weight;
+#if ESTIMATE
+        float companion_weight = transmittance * dt * mean_transmittance(companion, x, attenuation);
+        companion_radiance += (companion == exponential_quadratic ? parabola : source) * companion_weight;
+#endif
+        tau += x;
+        transmittance *= attenuation.across;
+        imageStore(accumulated, ivec3(column, k + 1), storable(vec4(radiance, tau)));
+        dt += dt * growth_of_slices;
+    }
+#if ESTIMATE
+    imageStore(error_estimate, column, vec4(abs(radiance - companion_radiance), 0.0));
+#endif
 }

@@ -35,7 +35,7 @@ TEST(FogJson, ReadsEveryKey) {
         "grid": {"width": 40, "height": 23, "slices": 16, "range_m": 100, "shape_m": 0.01},
         "shadow": {"esm_exponent": [100, 200, 300, 400]},
         "temporal": {"enabled": false, "new_frame_weight": 0.1, "jitter": false},
-        "storage": "fp32"})");
+        "storage": "fp32", "integrator": "exponential_quadratic", "error_estimate": true})");
     ASSERT_TRUE(fog) << fog.error().message;
     const Medium& m = fog->medium;
     EXPECT_EQ(m.homogeneous.extinction_per_m, 0.02F);
@@ -60,6 +60,8 @@ TEST(FogJson, ReadsEveryKey) {
     EXPECT_EQ(s.temporal.new_frame_weight, 0.1F);
     EXPECT_FALSE(s.temporal.jitter);
     EXPECT_EQ(s.storage, StorageFormat::fp32);
+    EXPECT_EQ(s.integrator, Integrator::exponential_quadratic);
+    EXPECT_TRUE(s.error_estimate);
 }
 
 TEST(FogJson, ShapeFollowsRangeUnlessGiven) {
@@ -88,6 +90,8 @@ TEST(FogJson, WrongTypesAreNamedByPath) {
     EXPECT_EQ(refusal(R"({"grid": {"width": -1}})"), "grid.width must be a whole number that is not negative.");
     EXPECT_EQ(refusal(R"({"temporal": {"enabled": 1}})"), "temporal.enabled must be true or false.");
     EXPECT_EQ(refusal(R"({"storage": "fp64"})"), R"(storage must be "fp16" or "fp32".)");
+    EXPECT_EQ(refusal(R"({"integrator": "simpson"})"),
+              R"(integrator must be one of "euler", "half_slice", "exponential", "exponential_quadratic".)");
     EXPECT_EQ(refusal(R"({"shadow": {"esm_exponent": [1, 2]}})"),
               "shadow.esm_exponent must be one number, or an array of 4 for the cascades.");
 }
