@@ -72,7 +72,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
     if (!errors.empty()) {
         return tl::unexpected(std::move(errors));
     }
-    const Kept kept = cull(graph, everything, order, options.culling);
+    Kept kept = cull(graph, everything, order, options.culling);
     // What was ordered through a culled pass must be ordered directly.
     const Flow flow = kept.culled_passes.empty() ? everything : follow_versions(graph, cells, &kept.pass);
     const QueueChoices choices = choose_queues(graph, topology, kept, options.async);
@@ -81,23 +81,24 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
         decide(work, choices, options, costs,
                previous != nullptr ? previous_schedule(work, topology, passes_hash, *previous) : ItemSchedule{});
     const Schedule sched = schedule_what_pays(graph, topology, cells, flow, work, choices, costs, decided);
-    const Memory placed = place(graph, topology, sched, memory, options.aliasing);
-    const Batches batches = make_batches(graph, sched);
-    const Synchronised sync = synchronise(graph, topology, cells, sched, placed, batches, options.full_barriers);
+    Memory placed = place(graph, topology, sched, memory, options.aliasing);
+    Batches batches = make_batches(graph, sched);
+    Synchronised sync = synchronise(graph, topology, cells, sched, placed, batches, options.full_barriers);
 
-    const Attachments attachments = choose_attachment_operations(graph, cells, sched);
+    Attachments attachments = choose_attachment_operations(graph, cells, sched);
 
     Plan plan;
     plan.topology = topology;
-    plan.dependencies = sync.dependencies;
-    plan.attachments = attachments.operations;
-    plan.placements = placed.placements;
-    plan.heaps = placed.heaps;
-    plan.batches = batches.batches;
-    plan.culled_passes = kept.culled_passes;
-    plan.culled_resources = kept.culled_resources;
     plan.first_exit_barrier = sync.first_exit;
     plan.exit_barrier_count = static_cast<std::uint32_t>(sync.dependencies.size()) - sync.first_exit;
+    plan.dependencies = std::move(sync.dependencies);
+    plan.attachments = std::move(attachments.operations);
+    plan.placements = std::move(placed.placements);
+    plan.heaps = std::move(placed.heaps);
+    plan.batches = std::move(batches.batches);
+    plan.culled_passes = std::move(kept.culled_passes);
+    plan.culled_resources = std::move(kept.culled_resources);
+    plan.passes.reserve(batches.order.size());
     std::vector<std::uint32_t> batch_of_pass(graph.passes.size(), none);
     for (const std::uint32_t slot : batches.order) {
         const std::uint32_t pass = sched.order[slot];
@@ -117,7 +118,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
         });
     }
     for (std::uint32_t i = 0; i < plan.batches.size(); ++i) {
-        plan.batches[i].releases = sync.releases[i];
+        plan.batches[i].releases = std::move(sync.releases[i]);
         plan.statistics.wait_count += static_cast<std::uint32_t>(plan.batches[i].waits.size());
     }
     name_reasons_of_waits(batch_of_pass, plan);

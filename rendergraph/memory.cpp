@@ -3,7 +3,6 @@
 // bytes overlap have all accesses of one before all accesses of the other.
 // O(uses x log + conflicts x log): see memory_types.hpp.
 #include <algorithm>
-#include <map>
 
 #include "rendergraph/memory_types.hpp"
 
@@ -65,36 +64,48 @@ Packing pack_without_sharing(std::span<const Block> blocks, std::uint32_t heap_c
 }
 
 /// For each block, in order of first slot, those that lie in its bytes until then. Whoever lay there before them is
-/// reached through them.
+/// reached through them. O(blocks x owners of a heap at a time).
 void find_owners_before(std::span<const Block> blocks, const Packing& packing, Memory& memory) {
     struct Owned {
+        VkDeviceSize begin;
         VkDeviceSize end;
         std::uint32_t resource;
     };
-    std::vector<std::map<VkDeviceSize, Owned>> heaps(packing.heap_bytes.size()); // by begin
+    std::vector<std::vector<Owned>> heaps(packing.heap_bytes.size()); // each by begin, without overlap
+    std::vector<Owned> remains;
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
-        std::map<VkDeviceSize, Owned>& owners = heaps[blocks[i].heap];
-        const VkDeviceSize begin = packing.offset_bytes[i];
-        const VkDeviceSize end = begin + blocks[i].size_bytes;
-        std::vector<std::uint32_t>& before = memory.takes_over[blocks[i].resource];
-        auto found = owners.lower_bound(begin);
-        if (found != owners.begin() && std::prev(found)->second.end > begin) {
-            --found;
-        }
-        while (found != owners.end() && found->first < end) {
-            const auto [owned_begin, owned] = *found;
-            before.push_back(owned.resource);
-            found = owners.erase(found);
-            if (owned_begin < begin) {
-                owners.emplace(owned_begin, Owned{begin, owned.resource});
-            }
-            if (owned.end > end) {
-                found = owners.emplace(end, Owned{owned.end, owned.resource}).first;
+        std::vector<Owned>& owners = heaps[blocks[i].heap];
+        const Owned block{packing.offset_bytes[i], packing.offset_bytes[i] + blocks[i].size_bytes, blocks[i].resource};
+        const auto first = std::partition_point(owners.begin(), owners.end(),
+                                                [&](const Owned& owned) { return owned.end <= block.begin; });
+        const auto last =
+            std::partition_point(first, owners.end(), [&](const Owned& owned) { return owned.begin < block.end; });
+        const auto before = static_cast<std::ptrdiff_t>(memory.owners_before.size());
+        remains.clear();
+        for (auto owned = first; owned != last; ++owned) {
+            memory.owners_before.push_back(owned->resource);
+            if (owned->begin < block.begin) {
+                remains.push_back({owned->begin, block.begin, owned->resource});
             }
         }
-        owners.emplace(begin, Owned{end, blocks[i].resource});
-        std::sort(before.begin(), before.end());
-        before.erase(std::unique(before.begin(), before.end()), before.end());
+        remains.push_back(block);
+        if (first != last && std::prev(last)->end > block.end) {
+            remains.push_back({block.end, std::prev(last)->end, std::prev(last)->resource});
+        }
+        const auto kept = std::min(remains.size(), static_cast<std::size_t>(last - first));
+        const auto middle = std::copy_n(remains.begin(), kept, first);
+        const auto rest = remains.begin() + static_cast<std::ptrdiff_t>(kept);
+        if (middle != last) {
+            owners.erase(middle, last);
+        } else {
+            owners.insert(middle, rest, remains.end());
+        }
+        const auto begin = memory.owners_before.begin() + before;
+        std::sort(begin, memory.owners_before.end());
+        memory.owners_before.erase(std::unique(begin, memory.owners_before.end()), memory.owners_before.end());
+        memory.first_owner_before[block.resource] = static_cast<std::uint32_t>(before);
+        memory.owner_before_count[block.resource] =
+            static_cast<std::uint32_t>(memory.owners_before.size()) - static_cast<std::uint32_t>(before);
     }
 }
 
@@ -131,7 +142,8 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     const auto count = static_cast<std::uint32_t>(graph.resources.size());
     Memory memory;
     memory.placements.resize(count);
-    memory.takes_over.resize(count);
+    memory.first_owner_before.resize(count, 0);
+    memory.owner_before_count.resize(count, 0);
     std::vector<Block> blocks;
     for (std::uint32_t resource = 0; resource < count; ++resource) {
         const ResourceDesc& desc = graph.resources[resource];
@@ -208,7 +220,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     }
     find_owners_before(blocks, packing, memory);
     for (const Block& block : blocks) {
-        if (const std::vector<std::uint32_t>& before = memory.takes_over[block.resource]; !before.empty()) {
+        if (const auto before = memory.taken_over_by(block.resource); !before.empty()) {
             memory.placements[block.resource].shares_with = before.front();
         }
     }

@@ -142,9 +142,15 @@ struct Memory {
     std::vector<Heap> heaps;
     VkDeviceSize unaliased_bytes = 0;
     VkDeviceSize largest_live_set_bytes = 0;
-    /// By resource: those that lay in its bytes last. All their accesses happen before its own, and theirs after those
-    /// of whoever lay there before them.
-    std::vector<std::vector<std::uint32_t>> takes_over;
+    std::vector<std::uint32_t> owners_before;      ///< of one resource after the other
+    std::vector<std::uint32_t> first_owner_before; ///< by resource, into owners_before
+    std::vector<std::uint32_t> owner_before_count; ///< by resource
+
+    /// Those that lay in a resource's bytes last. All their accesses happen before its own, and theirs after those of
+    /// whoever lay there before them.
+    [[nodiscard]] std::span<const std::uint32_t> taken_over_by(std::uint32_t resource) const {
+        return {owners_before.data() + first_owner_before[resource], owner_before_count[resource]};
+    }
 };
 /// Two resources may share bytes only if every access of one happens before every access of the other in the schedule's
 /// partial order. The lowest of several greedy packings.

@@ -6,6 +6,7 @@
 // Uses of a cell fall into groups: one write, or reads in one layout. Between two groups there is one dependency a
 // queue, before the first use there, with the masks of all the group's uses on that queue: reads are merged.
 #include <algorithm>
+#include <numeric>
 
 #include "rendergraph/synchronise_types.hpp"
 
@@ -36,7 +37,7 @@ public:
         for (std::uint32_t resource = 0; resource < graph_.resources.size(); ++resource) {
             visit(resource);
         }
-        collect();
+        collect(all_, exit_slot_, out_);
         return std::move(out_);
     }
 
@@ -64,7 +65,8 @@ private:
         }
     }
 
-    Before state_on_the_way_in(std::uint32_t resource) const {
+    /// Good until the next resource: alias uses lie in a buffer of their own.
+    Before state_on_the_way_in(std::uint32_t resource) {
         const ResourceDesc& desc = graph_.resources[resource];
         Before before;
         if (desc.lifetime == ResourceLifetime::imported) {
@@ -79,13 +81,15 @@ private:
             before.layout = out_.resting_layout[resource];
         } else {
             before.content = false;
-            for (const std::uint32_t other : memory_.takes_over[resource]) {
+            entry_uses_.clear();
+            for (const std::uint32_t other : memory_.taken_over_by(resource)) {
                 before.entry = Hazard::aliased_memory;
                 before.alias_of = before.alias_of == none ? other : before.alias_of;
                 for (const Use& use : uses_of(other)) {
-                    before.uses.push_back(&use);
+                    entry_uses_.push_back(&use);
                 }
             }
+            before.uses = entry_uses_;
         }
         return before;
     }
@@ -96,47 +100,59 @@ private:
             return;
         }
         found_.clear();
-        const ResourceCells& of = cells_.of_resource[resource];
-        std::vector<std::vector<const Use*>> cell_uses(of.count());
-        for (const Use& use : uses) {
-            for_each_cell(of, use.cells, [&](std::uint32_t cell) { cell_uses[cell].push_back(&use); });
-        }
         const Before entry = state_on_the_way_in(resource);
+        const ResourceCells& of = cells_.of_resource[resource];
+        sort_into_cells(of, uses);
         for (std::uint32_t cell = 0; cell < of.count(); ++cell) {
-            visit_cell(resource, cell, group(cell_uses[cell]), entry);
+            visit_cell(resource, cell,
+                       Uses(cell_uses_).subspan(first_use_[cell], first_use_[cell + 1] - first_use_[cell]), entry);
         }
-        for (CellDependency& found : found_) {
+        for (const CellDependency& found : found_) {
             add_ranges(resource, found);
         }
     }
 
-    static std::vector<Group> group(const std::vector<const Use*>& uses) {
-        std::vector<Group> groups;
-        for (const Use* use : uses) {
-            const bool joins =
-                !groups.empty() && !use->writes && !groups.back().writes && groups.back().layout == use->scope.layout;
-            if (!joins) {
-                groups.push_back({{}, use->writes, use->writes && !use->reads, use->scope.layout});
-            }
-            groups.back().uses.push_back(use);
+    /// Fills first_use_ and cell_uses_: the uses of each cell, in slot order.
+    void sort_into_cells(const ResourceCells& of, std::span<const Use> uses) {
+        first_use_.assign(of.count() + 1, 0);
+        for (const Use& use : uses) {
+            for_each_cell(of, use.cells, [&](std::uint32_t cell) { ++first_use_[cell + 1]; });
         }
-        return groups;
+        std::partial_sum(first_use_.begin(), first_use_.end(), first_use_.begin());
+        cell_uses_.resize(first_use_.back());
+        next_use_.assign(first_use_.begin(), first_use_.end() - 1);
+        for (const Use& use : uses) {
+            for_each_cell(of, use.cells, [&](std::uint32_t cell) { cell_uses_[next_use_[cell]++] = &use; });
+        }
     }
 
-    void visit_cell(std::uint32_t resource, std::uint32_t cell, const std::vector<Group>& groups, const Before& entry) {
-        Before before = entry;
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-            connect(resource, cell, before, groups[g]);
-            before = state_after(groups[g]);
+    /// The group that `uses` begins with.
+    static Group first_group(Uses uses) {
+        const Use& first = *uses.front();
+        std::size_t count = 1;
+        while (count < uses.size() && !first.writes && !uses[count]->writes &&
+               uses[count]->scope.layout == first.scope.layout) {
+            ++count;
         }
-        if (!groups.empty()) {
+        return {uses.first(count), first.writes, first.writes && !first.reads, first.scope.layout};
+    }
+
+    void visit_cell(std::uint32_t resource, std::uint32_t cell, Uses uses, const Before& entry) {
+        Before before = entry;
+        const bool untouched = uses.empty();
+        while (!uses.empty()) {
+            const Group group = first_group(uses);
+            connect(resource, cell, before, group);
+            before = state_after(group);
+            uses = uses.subspan(group.uses.size());
+        }
+        if (!untouched) {
             leave(resource, cell, before);
         } else if (changes_untouched_parts(graph_, resource, schedule_.concurrent[resource])) {
-            const Use& last = uses_of(resource).back(); // it takes the part along
-            const Group along{{&last}, false, false, graph_.imports[graph_.resources[resource].import].final_layout};
+            const Use* last = &uses_of(resource).back(); // it takes the part along
+            const Group along{{&last, 1}, false, false, graph_.imports[graph_.resources[resource].import].final_layout};
             connect(resource, cell, before, along);
-            before = state_after(along);
-            leave(resource, cell, before);
+            leave(resource, cell, state_after(along));
         }
     }
 
@@ -155,7 +171,7 @@ private:
         if (spans) {
             // The leader made the transition, or waited for the host; the others are ordered after it.
             Before after_leader;
-            after_leader.uses = {&leader};
+            after_leader.uses = group.uses.first(1);
             after_leader.layout = group.layout;
             after_leader.in_frame = true;
             for_first_on_other_queues(group, leader.queue, [&](const Use& use) {
@@ -184,7 +200,7 @@ private:
         Before after = before;
         if (same_batch) {
             emit(resource, cell, before, group, **local, true);
-            after.uses = {*local};
+            after.uses = {&*local, 1};
         } else {
             CellDependency made = build(resource, before, group, *group.uses.front(), true);
             Dependency& d = made.dependency;
@@ -356,18 +372,22 @@ private:
         record(std::move(made), cell);
     }
 
-    /// Cells with the same dependency become one record.
     void record(CellDependency made, std::uint32_t cell) {
+        Dependency& d = made.dependency;
         if (full_barriers_) {
-            Dependency& d = made.dependency;
             d.src_stages = d.dst_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
             d.local_stages = d.local_stages != 0 ? d.src_stages : 0;
             d.src_access = d.dst_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
             d.local_access = d.local_stages != 0 ? d.src_access : 0;
         }
+        if (cells_.of_resource[d.resource].whole) {
+            all_.push_back({d, made.slot, made.release_batch, made.only_at_release, {}});
+            return;
+        }
+        // Cells with the same dependency become one record.
         for (CellDependency& other : found_) {
             if (other.slot == made.slot && other.only_at_release == made.only_at_release &&
-                other.release_batch == made.release_batch && same_but_range(other.dependency, made.dependency)) {
+                other.release_batch == made.release_batch && same_but_range(other.dependency, d)) {
                 other.cells.push_back(cell);
                 return;
             }
@@ -379,12 +399,8 @@ private:
     /// Splits the cells of one record into rectangles of mips and layers, or runs of bytes.
     void add_ranges(std::uint32_t resource, const CellDependency& found) {
         const ResourceCells& of = cells_.of_resource[resource];
-        if (of.whole) {
-            all_.push_back(found);
-            return;
-        }
         for (const CellRange& range : as_rectangles(of, found.cells)) {
-            CellDependency part = found;
+            CellDependency part{found.dependency, found.slot, found.release_batch, found.only_at_release, {}};
             if (graph_.resources[resource].kind == ResourceKind::image) {
                 part.dependency.image_range = {range.first_mip, range.mip_count, range.first_layer, range.layer_count,
                                                0};
@@ -396,37 +412,6 @@ private:
         }
     }
 
-    void collect() {
-        std::stable_sort(all_.begin(), all_.end(),
-                         [](const CellDependency& a, const CellDependency& b) { return a.slot < b.slot; });
-        out_.first_of_slot.assign(exit_slot_ + 1, 0);
-        // Those at a batch's end first, so that what stands before a slot is one range.
-        for (const CellDependency& found : all_) {
-            if (found.only_at_release) {
-                out_.releases[found.release_batch].push_back(static_cast<std::uint32_t>(out_.dependencies.size()));
-                out_.dependencies.push_back(found.dependency);
-            }
-        }
-        std::uint32_t slot = 0;
-        out_.first_of_slot[0] = static_cast<std::uint32_t>(out_.dependencies.size());
-        for (const CellDependency& found : all_) {
-            if (found.only_at_release) {
-                continue;
-            }
-            while (slot < found.slot) {
-                out_.first_of_slot[++slot] = static_cast<std::uint32_t>(out_.dependencies.size());
-            }
-            if (found.release_batch != none) {
-                out_.releases[found.release_batch].push_back(static_cast<std::uint32_t>(out_.dependencies.size()));
-            }
-            out_.dependencies.push_back(found.dependency);
-        }
-        while (slot < exit_slot_) {
-            out_.first_of_slot[++slot] = static_cast<std::uint32_t>(out_.dependencies.size());
-        }
-        out_.first_exit = out_.first_of_slot[exit_slot_];
-    }
-
     const GraphDesc& graph_;
     const QueueTopology& topology_;
     const Cells& cells_;
@@ -436,8 +421,13 @@ private:
     bool full_barriers_;
     std::uint32_t exit_slot_;
     Synchronised out_;
-    std::vector<CellDependency> found_; ///< of the resource at hand
     std::vector<CellDependency> all_;
+    // Of the resource at hand; members, so that their memory serves all resources.
+    std::vector<CellDependency> found_;
+    std::vector<const Use*> entry_uses_;
+    std::vector<const Use*> cell_uses_;    ///< cell by cell
+    std::vector<std::uint32_t> first_use_; ///< by cell, cells + 1 entries into cell_uses_
+    std::vector<std::uint32_t> next_use_;
 };
 
 } // namespace

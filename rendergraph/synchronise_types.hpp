@@ -11,8 +11,11 @@ inline constexpr VkAccessFlags2 any_write =
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT |
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
 
+using Uses = std::span<const Use* const>;
+
+/// Uses of one cell that need nothing of each other.
 struct Group {
-    std::vector<const Use*> uses;
+    Uses uses;
     bool writes = false;
     bool discards = false; ///< a write that does not read
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -20,7 +23,7 @@ struct Group {
 
 /// What came before a group: other uses, or the state on the way in.
 struct Before {
-    std::vector<const Use*> uses;
+    Uses uses;
     VkPipelineStageFlags2 host_stages = 0; ///< imports: the host's last use
     VkAccessFlags2 host_access = 0;
     std::uint32_t host_family = VK_QUEUE_FAMILY_IGNORED;
@@ -54,9 +57,13 @@ struct CellDependency {
     Dependency dependency;
     std::uint32_t slot; ///< of the consumer, the number of slots for exits
     std::uint32_t release_batch = none;
-    bool only_at_release = false; ///< recorded at the end of release_batch and nowhere else
-    std::vector<std::uint32_t> cells;
+    bool only_at_release = false;     ///< recorded at the end of release_batch and nowhere else
+    std::vector<std::uint32_t> cells; ///< empty: the whole resource
 };
+
+/// Fills the dependencies of `out`, whose `releases` has a list for each batch, in the order in which a frame records
+/// them. Exits have the slot `exit_slot`. O(found).
+void collect(std::span<const CellDependency> found, std::uint32_t exit_slot, Synchronised& out);
 
 [[nodiscard]] inline bool same_but_range(const Dependency& a, const Dependency& b) {
     return a.producer == b.producer && a.consumer == b.consumer && a.hazard == b.hazard &&
