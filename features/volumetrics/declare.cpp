@@ -108,6 +108,11 @@ tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, c
     const auto source_texels = static_cast<float>(source_size);
     frame->parameters.esm_size = glm::vec4(texels, 1.0F / texels, source_texels, 1.0F / source_texels);
     host_buffers->write(frame->inputs.frame_slot, frame->parameters);
+    if (frame->inputs.settings.visibility.method != SunVisibility::prefiltered) {
+        omit("ESM downsample and blur", "fog looks the sun up in the cascades themselves");
+        frame->shadow_map = shadow.cascades;
+        return {};
+    }
 
     const GroupShape group = row_group(size);
     const auto downsample = pipelines.compute(esm_downsample_shader(), group);
@@ -144,6 +149,7 @@ tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, c
     };
     const rg::Image across = blur("ESM blur x", "sun ESM, blurred in x", *blur_x, esm);
     frame->stages.esm = blur("ESM blur y", "sun ESM, blurred", *blur_y, across);
+    frame->shadow_map = frame->stages.esm;
     return {};
 }
 
@@ -154,13 +160,16 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
                                   .lights = frame->lights,
                                   .history = inputs.settings.temporal.enabled};
     const GridSettings& grid = inputs.settings.grid;
+    const VisibilitySettings& visibility = inputs.settings.visibility;
     const GroupShape group = row_group(grid.width);
     // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
-    const std::array<std::uint32_t, 4> constants{
+    const std::array<std::uint32_t, 6> constants{
         inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
-        variant.sun_shadow ? graph.describe(frame->stages.esm)->layers : 0,
+        variant.sun_shadow ? graph.describe(frame->shadow_map)->layers : 0,
         is_perspective(inputs.camera),
         variant.history && frame->camera_stands,
+        static_cast<std::uint32_t>(visibility.method),
+        visibility.method == SunVisibility::n_taps ? visibility.taps : 1,
     };
     const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
     if (!program) {
@@ -176,7 +185,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         pass.reads(history, Access::sampled_compute);
     }
     if (variant.sun_shadow) {
-        pass.reads(frame->stages.esm, Access::sampled_compute).reads(shadow.parameters, Access::uniform_compute);
+        pass.reads(frame->shadow_map, Access::sampled_compute).reads(shadow.parameters, Access::uniform_compute);
     }
     const bool compact = variant.lights == LocalLights::clustered_compact;
     const rg::Buffer light_buffer = compact ? frame->compact_lights : frame->light_buffer;
@@ -189,7 +198,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     }
     pass.writes(in_scattered, Access::storage_compute);
     pass.executes([=, dispatch = covering(*program, group, grid.width, grid.height, grid.slices),
-                   parameters = frame->parameter_buffer, esm = frame->stages.esm, cascades = shadow.parameters,
+                   parameters = frame->parameter_buffer, shadow_map = frame->shadow_map, cascades = shadow.parameters,
                    clusters = frame->clusters.value_or(ClusterResources{}), cold = frame->cold, linear_sampler = linear,
                    nearest_sampler = nearest](PassContext& ctx) {
         std::array<Binding, 8> bindings{};
@@ -197,7 +206,9 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         bindings[count++] = ctx.uniform(0, parameters);
         bindings[count++] = ctx.storage(1, in_scattered);
         if (variant.sun_shadow) {
-            bindings[count++] = ctx.sampled(2, esm, nearest_sampler, array_view);
+            bindings[count++] =
+                ctx.sampled(2, shadow_map, nearest_sampler,
+                            visibility.method == SunVisibility::prefiltered ? array_view : depth_array_view);
             bindings[count++] = ctx.uniform(3, cascades);
         }
         if (variant.lights != LocalLights::none) {

@@ -26,6 +26,7 @@ struct FrameState {
     rg::Buffer compact_lights; ///< its first lights, for binding as uniforms
     std::optional<ClusterResources> clusters;
     std::optional<VolumeResources> volume;
+    rg::Image shadow_map; ///< the ESM or the cascades, as the settings' visibility wants
     StageResources stages;
 };
 

@@ -248,6 +248,14 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
                {"exponential", Integrator::exponential},
                {"exponential_quadratic", Integrator::exponential_quadratic}});
     root.read("error_estimate", settings.error_estimate);
+    subsection(root, "visibility", error, [&](Section& s) {
+        s.read("method", settings.visibility.method,
+               {{"one_tap", SunVisibility::one_tap},
+                {"n_taps", SunVisibility::n_taps},
+                {"prefiltered", SunVisibility::prefiltered},
+                {"lit_fraction", SunVisibility::lit_fraction}});
+        s.read("taps", settings.visibility.taps);
+    });
 }
 
 } // namespace

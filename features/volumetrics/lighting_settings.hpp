@@ -14,4 +14,17 @@ enum class Integrator : std::uint8_t {
     exponential_quadratic, ///< the source is a parabola in optical depth through neighbouring slices; order 4
 };
 
+/// How much of a slice of the ray the sun lights (shaders/volumetrics/slice_visibility.glsl).
+enum class SunVisibility : std::uint8_t {
+    one_tap,      ///< the cascade's texel at the froxel's sample
+    n_taps,       ///< the mean of several such along the slice
+    prefiltered,  ///< the exponential shadow map at the froxel's sample
+    lit_fraction, ///< the part of the slice that is lit, from every texel that it crosses
+};
+
+struct VisibilitySettings {
+    SunVisibility method = SunVisibility::prefiltered;
+    std::uint32_t taps = 4; ///< of n_taps, [1, 64]
+};
+
 } // namespace tyndall::volumetrics

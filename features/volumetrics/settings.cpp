@@ -78,6 +78,7 @@ tl::expected<void, Error> validate(const Settings& settings) {
         check.in_range("shadow.esm_exponent", exponent, 1.0, 1000.0);
     }
     check.in_range("shadow.esm_size", settings.shadow.esm_size, 16, 2048);
+    check.in_range("visibility.taps", settings.visibility.taps, 1, 64);
     check.in_range("temporal.new_frame_weight", settings.temporal.new_frame_weight, 0.001F, 1.0);
     return check.result();
 }

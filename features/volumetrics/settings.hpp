@@ -73,6 +73,7 @@ struct Settings {
     TemporalSettings temporal;
     StorageFormat storage = StorageFormat::fp16;
     Integrator integrator = Integrator::exponential;
+    VisibilitySettings visibility;
     bool error_estimate = false; ///< the integrator's own, beside the image (StageResources::error_estimate)
     bool clusters = true;        ///< false: every froxel visits every light
     bool async_compute = false;  ///< the compute passes ask for async compute; else the scheduler decides

@@ -1,10 +1,10 @@
-// ESM, light clusters, ambient, history -> in-scattered radiance per unit of scattering coefficient (rgb) and the number
+// Sun shadow map, light clusters, ambient, history -> in-scattered radiance per unit of scattering coefficient (rgb) and the number
 // of frames in its mean (a).
 //
 // The sample lies at a jittered place in its froxel, so that the mean over frames averages visibility along the slice
 // and across it. Reprojection blends with the frame before: a running mean, 1/n, until the steady weight.
 //
-// SUN_SHADOW 1: sun through the ESM. LIGHTS 0: none; 1: every froxel visits all; 2: by clusters; 3: by clusters, from the
+// SUN_SHADOW 1: sun through the ESM or the cascades, as `visibility` wants. LIGHTS 0: none; 1: every froxel visits all; 2: by clusters; 3: by clusters, from the
 // compact copy of at most 256 lights in a uniform buffer, which processors fetch several times faster than a storage
 // buffer when the index differs between lanes. HISTORY 1: temporal reprojection.
 #version 460
@@ -14,6 +14,7 @@
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
 #include "volumetrics/random.glsl"
+#include "volumetrics/ray_segment.glsl"
 #include "volumetrics/storage.glsl"
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
@@ -21,13 +22,15 @@ layout(constant_id = 3) const bool has_sun = true;
 layout(constant_id = 4) const uint cascade_count = 4;
 layout(constant_id = 5) const bool is_perspective = true;
 layout(constant_id = 6) const bool camera_stands = false; // since the frame before: history is not reprojected
+layout(constant_id = 7) const uint sun_visibility = 2;    // of slice_visibility.glsl
+layout(constant_id = 8) const uint visibility_taps = 1;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
 
 #if SUN_SHADOW
-#include "volumetrics/esm.glsl"
-layout(set = 0, binding = 2) uniform sampler2DArray esm; // nearest, clamps
+#include "volumetrics/slice_visibility.glsl"
+layout(set = 0, binding = 2) uniform sampler2DArray shadow_map; // ESM or cascades; nearest, clamps
 layout(set = 0, binding = 3) uniform Sun { SunCascades cascades; };
 #endif
 #if LIGHTS
@@ -48,12 +51,14 @@ layout(set = 0, binding = 7) uniform sampler3D history; // linear, clamps
 layout(push_constant) uniform Push { uint history_valid; };
 #endif
 
-vec3 sun_scattering(vec3 position, float depth_m, vec3 to_eye) {
+vec3 sun_scattering(RaySegment segment, float depth_m) {
     float visibility = 1.0;
 #if SUN_SHADOW
-    SUN_VISIBILITY(cascades, cascade_count, esm, u.esm_exponents, u.esm_size.xy, position, depth_m, visibility)
+    vec2 size = sun_visibility == prefiltered ? u.esm_size.xy : u.esm_size.zw;
+    SUN_VISIBILITY(cascades, cascade_count, shadow_map, u.esm_exponents, size, sun_visibility, visibility_taps,
+                   segment, depth_m, visibility)
 #endif
-    return u.sun_illuminance.rgb * (visibility * henyey_greenstein(u.phase.x, u.sun_direction.xyz, to_eye));
+    return u.sun_illuminance.rgb * (visibility * henyey_greenstein(u.phase.x, u.sun_direction.xyz, segment.to_eye));
 }
 
 #if LIGHTS
@@ -120,13 +125,14 @@ void main() {
         position += u.eye_u.xyz * uv.x + u.eye_v.xyz * uv.y + u.eye_0.xyz;
     }
 
+    RaySegment segment = RaySegment(position, to_eye, (depth_m - near_m) * stretch, (far_m - depth_m) * stretch);
+
     vec3 sum = u.ambient.rgb;
     if (has_sun) {
-        sum += sun_scattering(position, depth_m, to_eye);
+        sum += sun_scattering(segment, depth_m);
     }
 #if LIGHTS
-    sum += local_scattering(froxel, RaySegment(position, to_eye, (depth_m - near_m) * stretch,
-                                               (far_m - depth_m) * stretch));
+    sum += local_scattering(froxel, segment);
 #endif
     vec4 result = vec4(sum * u.volume.scale.x, 1.0);
     result = is_finite(result) ? result : vec4(0.0, 0.0, 0.0, 1.0);

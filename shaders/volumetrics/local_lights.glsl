@@ -3,14 +3,7 @@
 #define TYNDALL_SHADERS_VOLUMETRICS_LOCAL_LIGHTS_GLSL
 
 #include "common/lights.glsl"
-
-// The part of a ray that one froxel sees: a sample on it, and how far the slice reaches on both sides of the sample.
-struct RaySegment {
-    vec3 position; // render space
-    vec3 to_eye;   // unit
-    float behind_m; // from the sample toward the eye, >= 0
-    float ahead_m;  // and away from it
-};
+#include "volumetrics/ray_segment.glsl"
 
 // atan(y, x) for y > 0, to 8e-7: Chebyshev fit of atan(r) / r on [0, 1] in r^2.
 float positive_atan(float y, float x) {

@@ -71,6 +71,26 @@ Scene plain_scene() {
     return scene;
 }
 
+Scene sunlit_scene(float extent_m) {
+    Scene scene = plain_scene();
+    scene.inputs.medium.homogeneous = {.extinction_per_m = 0.01F, .albedo = glm::vec3(1.0F)};
+    scene.inputs.sun =
+        Sun{.direction = {0.0F, -1.0F, 0.0F}, .illuminance_lux = glm::vec3(10.0F), .casts_shadows = true};
+    glm::mat4 shadow(0.0F); // u along x, v along z, depth 0 at y = extent / 2 and 1 at -extent / 2
+    shadow[0][0] = 1.0F / extent_m;
+    shadow[2][1] = 1.0F / extent_m;
+    shadow[1][2] = -1.0F / extent_m;
+    shadow[3] = glm::vec4(0.5F, 0.5F, 0.5F, 1.0F);
+    for (glm::mat4& cascade : scene.cascades.shadow_from_render) {
+        cascade = shadow;
+    }
+    scene.cascades.split_depth_m = {16.0F, 32.0F, 48.0F, 64.0F};
+    scene.cascades.depth_range_m = glm::vec4(extent_m);
+    scene.cascades.direction_count = {0.0F, -1.0F, 0.0F, 4.0F};
+    scene.cascade_depths.assign(std::size_t{4} * scene.cascade_size * scene.cascade_size, 1.0F);
+    return scene;
+}
+
 PixelRay pixel_ray(const Scene& scene, std::uint32_t x, std::uint32_t y) {
     const glm::dvec3 at_one_metre(((x + 0.5) / scene.image.x * 2.0 - 1.0) * tan_x,
                                   (1.0 - (y + 0.5) / scene.image.y * 2.0) * tan_y, -1.0);

@@ -35,7 +35,8 @@ TEST(FogJson, ReadsEveryKey) {
         "grid": {"width": 40, "height": 23, "slices": 16, "range_m": 100, "shape_m": 0.01},
         "shadow": {"esm_exponent": [100, 200, 300, 400]},
         "temporal": {"enabled": false, "new_frame_weight": 0.1, "jitter": false},
-        "storage": "fp32", "integrator": "exponential_quadratic", "error_estimate": true})");
+        "storage": "fp32", "integrator": "exponential_quadratic", "error_estimate": true,
+        "visibility": {"method": "n_taps", "taps": 7}})");
     ASSERT_TRUE(fog) << fog.error().message;
     const Medium& m = fog->medium;
     EXPECT_EQ(m.homogeneous.extinction_per_m, 0.02F);
@@ -62,6 +63,8 @@ TEST(FogJson, ReadsEveryKey) {
     EXPECT_EQ(s.storage, StorageFormat::fp32);
     EXPECT_EQ(s.integrator, Integrator::exponential_quadratic);
     EXPECT_TRUE(s.error_estimate);
+    EXPECT_EQ(s.visibility.method, SunVisibility::n_taps);
+    EXPECT_EQ(s.visibility.taps, 7U);
 }
 
 TEST(FogJson, ShapeFollowsRangeUnlessGiven) {
@@ -108,6 +111,7 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 0}})").substr(0, 12), "grid.range_m");
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 10, "shape_m": 1e-4}})").substr(0, 12), "grid.shape_m");
     EXPECT_EQ(refusal(R"({"shadow": {"esm_exponent": 0}})"), "shadow.esm_exponent must be between 1 and 1000, not 0.");
+    EXPECT_EQ(refusal(R"({"visibility": {"taps": 0}})"), "visibility.taps must be between 1 and 64, not 0.");
     EXPECT_EQ(refusal(R"({"temporal": {"new_frame_weight": 0}})"),
               "temporal.new_frame_weight must be between 0.001 and 1, not 0.");
 }
