@@ -19,26 +19,31 @@ Batches make_batches(const GraphDesc& graph, const Schedule& schedule) {
     // numbering looks backward.
     Batches out;
     out.batch_of.assign(count, 0);
-    std::vector<std::vector<std::uint32_t>> slots;
     std::vector<std::uint32_t> open(schedule.queue_count, none);
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         const std::uint32_t queue = schedule.queue[slot];
         if (open[queue] == none || waits[slot]) {
             open[queue] = static_cast<std::uint32_t>(out.batches.size());
             out.batches.push_back({.queue = queue});
-            slots.emplace_back();
         }
         out.batch_of[slot] = open[queue];
-        slots[open[queue]].push_back(slot);
+        ++out.batches[open[queue]].pass_count;
         if (signals[slot]) {
             out.batches[open[queue]].signals = true;
             open[queue] = none;
         }
     }
-    for (std::uint32_t batch = 0; batch < out.batches.size(); ++batch) {
-        out.batches[batch].first_pass = static_cast<std::uint32_t>(out.order.size());
-        out.batches[batch].pass_count = static_cast<std::uint32_t>(slots[batch].size());
-        out.order.insert(out.order.end(), slots[batch].begin(), slots[batch].end());
+    std::vector<std::uint32_t> next; // place in `order` of each batch's next pass
+    next.reserve(out.batches.size());
+    std::uint32_t first_pass = 0;
+    for (Batch& batch : out.batches) {
+        batch.first_pass = first_pass;
+        next.push_back(first_pass);
+        first_pass += batch.pass_count;
+    }
+    out.order.resize(count);
+    for (std::uint32_t slot = 0; slot < count; ++slot) {
+        out.order[next[out.batch_of[slot]]++] = slot;
     }
     for (const QueueWait& wait : schedule.waits) {
         // The whole batch waits, with every stage: later passes of the queue rely on the same wait.

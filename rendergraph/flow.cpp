@@ -2,6 +2,7 @@
 // In: a graph whose handles and ranges are sound. Out: edges between passes, by hazard. Invariant: an order that
 // respects all edges gives every read the content of the version that it names. O(accesses x cells of each).
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 #include "rendergraph/stages.hpp"
@@ -10,9 +11,34 @@ namespace tyndall::rg::stages {
 namespace {
 
 struct CellState {
-    std::uint32_t writer = none;             ///< access
-    std::vector<std::uint32_t> readers = {}; ///< accesses since then
+    std::uint32_t writer = none;      ///< access
+    std::uint32_t last_reader = none; ///< since then, the head of a list in Follower::readers_
 };
+struct Reader {
+    std::uint32_t access;
+    std::uint32_t before; ///< the reader before it, `none` at the end
+};
+
+/// Sorts by (to, from, hazard, resource): buckets by `to`, which are small, each sorted. O(edges log edges of a pass).
+void sort_edges(std::vector<Edge>& edges, std::size_t pass_count) {
+    std::vector<std::uint32_t> next(pass_count + 1, 0);
+    for (const Edge& edge : edges) {
+        ++next[edge.to + 1];
+    }
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<Edge> sorted(edges.size());
+    for (const Edge& edge : edges) {
+        sorted[next[edge.to]++] = edge;
+    }
+    std::uint32_t begin = 0;
+    for (std::size_t pass = 0; pass < pass_count; ++pass) { // next[pass] is now the end of the pass's bucket
+        std::sort(sorted.begin() + begin, sorted.begin() + next[pass], [](const Edge& a, const Edge& b) {
+            return std::tie(a.from, a.hazard, a.resource) < std::tie(b.from, b.hazard, b.resource);
+        });
+        begin = next[pass];
+    }
+    edges.swap(sorted);
+}
 
 std::string quoted(const std::string& name) {
     return "'" + name + "'";
@@ -24,18 +50,13 @@ public:
         : graph_(graph), cells_(cells), kept_(kept) {}
 
     Flow run() {
-        std::vector<std::vector<std::uint32_t>> by_resource(graph_.resources.size());
-        for (std::uint32_t i = 0; i < graph_.accesses.size(); ++i) {
-            if (kept_ == nullptr || (*kept_)[graph_.accesses[i].pass]) {
-                by_resource[graph_.accesses[i].resource].push_back(i);
-            }
+        sort_accesses_by_resource();
+        flow_.edges.reserve(2 * accesses_.size());
+        for (std::uint32_t resource = 0; resource < graph_.resources.size(); ++resource) {
+            follow(resource, std::span(accesses_).subspan(first_access_[resource],
+                                                          first_access_[resource + 1] - first_access_[resource]));
         }
-        for (std::uint32_t resource = 0; resource < by_resource.size(); ++resource) {
-            follow(resource, by_resource[resource]);
-        }
-        std::sort(flow_.edges.begin(), flow_.edges.end(), [](const Edge& a, const Edge& b) {
-            return std::tie(a.to, a.from, a.hazard, a.resource) < std::tie(b.to, b.from, b.hazard, b.resource);
-        });
+        sort_edges(flow_.edges, graph_.passes.size());
         // One edge a pair is enough for order; the first data edge of a pair is enough for reachability.
         const auto same = [](const Edge& a, const Edge& b) {
             return a.to == b.to && a.from == b.from &&
@@ -46,17 +67,38 @@ public:
     }
 
 private:
-    void follow(std::uint32_t resource, std::vector<std::uint32_t>& accesses) {
+    [[nodiscard]] bool exists(const AccessDesc& access) const { return kept_ == nullptr || (*kept_)[access.pass]; }
+
+    /// Fills accesses_ and first_access_: by resource, in order of declaration.
+    void sort_accesses_by_resource() {
+        first_access_.assign(graph_.resources.size() + 1, 0);
+        for (const AccessDesc& access : graph_.accesses) {
+            first_access_[access.resource + 1] += exists(access) ? 1 : 0;
+        }
+        std::partial_sum(first_access_.begin(), first_access_.end(), first_access_.begin());
+        accesses_.resize(first_access_.back());
+        std::vector<std::uint32_t> next(first_access_.begin(), first_access_.end() - 1);
+        for (std::uint32_t i = 0; i < graph_.accesses.size(); ++i) {
+            if (exists(graph_.accesses[i])) {
+                accesses_[next[graph_.accesses[i].resource]++] = i;
+            }
+        }
+    }
+
+    void follow(std::uint32_t resource, std::span<std::uint32_t> accesses) {
         // In order of content: the write that makes version v, then the reads of v, then the write that makes v + 1.
         const auto key = [&](std::uint32_t i) {
             const AccessDesc& a = graph_.accesses[i];
             return 2 * std::uint64_t{a.version} + (is_write(a.direction) ? 0 : 1);
         };
-        std::stable_sort(accesses.begin(), accesses.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+        const auto before = [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); };
+        if (!std::is_sorted(accesses.begin(), accesses.end(), before)) {
+            std::stable_sort(accesses.begin(), accesses.end(), before);
+        }
         report_two_writers(resource, accesses);
 
         states_.assign(cells_.of_resource[resource].count(), CellState{});
+        readers_.clear();
         for (const std::uint32_t i : accesses) {
             visit(resource, i);
         }
@@ -85,16 +127,17 @@ private:
                 }
             }
             if (is_write(access.direction)) {
-                for (const std::uint32_t reader : state.readers) {
-                    add(reader, index, Hazard::write_after_read);
+                for (std::uint32_t i = state.last_reader; i != none; i = readers_[i].before) {
+                    add(readers_[i].access, index, Hazard::write_after_read);
                 }
                 if (state.writer != none && !is_read(access.direction)) {
                     add(state.writer, index, Hazard::write_after_write);
                 }
                 state.writer = index;
-                state.readers.clear();
+                state.last_reader = none;
             } else {
-                state.readers.push_back(index);
+                readers_.push_back({index, state.last_reader});
+                state.last_reader = static_cast<std::uint32_t>(readers_.size() - 1);
             }
         });
         if (unwritten) {
@@ -150,7 +193,10 @@ private:
     const Cells& cells_;
     const std::vector<bool>* kept_;
     Flow flow_;
-    std::vector<CellState> states_;
+    std::vector<std::uint32_t> accesses_;     ///< indices by resource
+    std::vector<std::uint32_t> first_access_; ///< by resource, resources + 1 entries into accesses_
+    std::vector<CellState> states_;           ///< of the resource at hand, by cell
+    std::vector<Reader> readers_;             ///< of the resource at hand
 };
 
 } // namespace

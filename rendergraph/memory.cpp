@@ -158,14 +158,15 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         placement.image_usage = desc.image.extra_usage;
         placement.buffer_usage = desc.buffer.extra_usage;
         placement.concurrent = schedule.concurrent[resource];
-        for (std::uint32_t i = first; i < end; ++i) {
-            const std::uint32_t family = topology.queues[schedule.uses[i].queue].family;
-            if (std::find(placement.families.begin(), placement.families.end(), family) == placement.families.end()) {
-                placement.families.push_back(family);
-            }
-        }
-        std::sort(placement.families.begin(), placement.families.end());
         if (paired) {
+            for (std::uint32_t i = first; i < end; ++i) {
+                const std::uint32_t family = topology.queues[schedule.uses[i].queue].family;
+                if (std::find(placement.families.begin(), placement.families.end(), family) ==
+                    placement.families.end()) {
+                    placement.families.push_back(family);
+                }
+            }
+            std::sort(placement.families.begin(), placement.families.end());
             placement.kind = PlacementKind::history;
         } else {
             placement.kind = PlacementKind::heap;

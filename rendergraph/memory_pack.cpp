@@ -42,10 +42,13 @@ VkDeviceSize find_gap(std::vector<Extent>& taken, const Block& block, VkDeviceSi
     return best_size == ~VkDeviceSize{0} || fits_at_end ? offset : best;
 }
 
-Packing pack_in_order(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
-                      std::span<const std::uint32_t> order, Fit fit) {
+/// False, with `packing` unfinished, once it is not going to stay below `limit_bytes` in total.
+bool pack_in_order(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
+                   std::span<const std::uint32_t> order, Fit fit, VkDeviceSize limit_bytes, Packing& packing) {
     constexpr VkDeviceSize unplaced = ~VkDeviceSize{0};
-    Packing packing{std::vector<VkDeviceSize>(blocks.size(), unplaced), std::vector<VkDeviceSize>(heap_count, 0)};
+    packing.offset_bytes.assign(blocks.size(), unplaced);
+    packing.heap_bytes.assign(heap_count, 0);
+    packing.total_bytes = 0;
     std::vector<Extent> taken;
     for (const std::uint32_t i : order) {
         const Block& block = blocks[i];
@@ -57,35 +60,40 @@ Packing pack_in_order(std::span<const Block> blocks, const Conflicts& conflicts,
         }
         VkDeviceSize& heap_bytes = packing.heap_bytes[block.heap];
         packing.offset_bytes[i] = find_gap(taken, block, heap_bytes, fit);
-        heap_bytes = std::max(heap_bytes, packing.offset_bytes[i] + block.size_bytes);
+        const VkDeviceSize grown = std::max(heap_bytes, packing.offset_bytes[i] + block.size_bytes);
+        packing.total_bytes += grown - heap_bytes;
+        heap_bytes = grown;
+        if (packing.total_bytes >= limit_bytes) {
+            return false;
+        }
     }
-    packing.total_bytes = std::accumulate(packing.heap_bytes.begin(), packing.heap_bytes.end(), VkDeviceSize{0});
-    return packing;
+    return true;
 }
 
 } // namespace
 
 Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count) {
     std::vector<std::uint32_t> order(blocks.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto ordered_by = [&](auto key) {
+    const auto order_by = [&](auto key) {
         std::iota(order.begin(), order.end(), 0U);
         std::stable_sort(order.begin(), order.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return key(blocks[a]) > key(blocks[b]); });
-        return std::span<const std::uint32_t>(order);
     };
-    Packing best = pack_in_order(blocks, conflicts, heap_count,
-                                 ordered_by([](const Block& block) { return block.size_bytes; }), Fit::smallest_gap);
-    const auto consider = [&](std::span<const std::uint32_t> other_order) {
-        Packing other = pack_in_order(blocks, conflicts, heap_count, other_order, Fit::lowest_gap);
-        if (other.total_bytes < best.total_bytes) {
-            best = std::move(other);
+    Packing best;
+    Packing other;
+    order_by([](const Block& block) { return block.size_bytes; });
+    pack_in_order(blocks, conflicts, heap_count, order, Fit::smallest_gap, ~VkDeviceSize{0}, best);
+    const auto consider_order = [&] {
+        if (pack_in_order(blocks, conflicts, heap_count, order, Fit::lowest_gap, best.total_bytes, other)) {
+            std::swap(best, other);
         }
     };
-    consider(ordered_by([](const Block& block) { return block.last_slot - block.first_slot; }));
-    consider(
-        ordered_by([](const Block& block) { return block.size_bytes * (block.last_slot - block.first_slot + 1); }));
-    consider(ordered_by([](const Block&) { return 0; })); // as they come: by first slot
+    order_by([](const Block& block) { return block.last_slot - block.first_slot; });
+    consider_order();
+    order_by([](const Block& block) { return block.size_bytes * (block.last_slot - block.first_slot + 1); });
+    consider_order();
+    std::iota(order.begin(), order.end(), 0U); // as they come: by first slot
+    consider_order();
     return best;
 }
 

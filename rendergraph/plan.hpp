@@ -195,7 +195,7 @@ struct Placement {
     VkImageUsageFlags image_usage = 0;
     VkBufferUsageFlags buffer_usage = 0;
     bool concurrent = false;             ///< shared by several queue families at once
-    std::vector<std::uint32_t> families; ///< that use it, when concurrent
+    std::vector<std::uint32_t> families; ///< history: queue families that use either copy, ascending
     std::uint32_t shares_with = none;    ///< a resource whose bytes it takes over, `none` if it has them alone
     VkImageLayout resting_layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< history: of both copies between frames
 };
