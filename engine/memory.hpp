@@ -22,7 +22,7 @@ enum class MemoryUse : std::uint8_t {
 class Buffer {
 public:
     [[nodiscard]] static tl::expected<Buffer, Error> create(const Device& device, VkDeviceSize size_bytes,
-                                                            VkBufferUsageFlags usage, MemoryUse memory);
+                                                            VkBufferUsageFlags usage, MemoryUse use);
     Buffer() = default;
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
     Buffer& operator=(Buffer&& other) noexcept;

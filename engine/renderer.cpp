@@ -35,7 +35,7 @@ std::vector<std::string> Renderer::injection_points() {
 }
 
 Renderer::Renderer(const Device& device, Scene scene, RendererSettings settings)
-    : device_(&device), scene_(std::move(scene)), settings_(std::move(settings)), lights_(assign_lights(scene_)),
+    : device_(&device), scene_(std::move(scene)), settings_(settings), lights_(assign_lights(scene_)),
       casters_(caster_bounds(scene_)) {}
 
 Renderer::~Renderer() = default;
@@ -43,7 +43,7 @@ Renderer::~Renderer() = default;
 tl::expected<std::unique_ptr<Renderer>, Error> Renderer::create(const Device& device, VkPipelineCache cache,
                                                                 Scene scene, RendererSettings settings,
                                                                 std::uint32_t frames_in_flight) {
-    std::unique_ptr<Renderer> renderer(new Renderer(device, std::move(scene), std::move(settings)));
+    std::unique_ptr<Renderer> renderer(new Renderer(device, std::move(scene), settings));
     if (auto made = renderer->make(cache, frames_in_flight); !made) {
         return tl::unexpected(made.error());
     }

@@ -90,10 +90,10 @@ struct Decided {
     std::int64_t least_gain_ns = 0; ///< of a new schedule over the one that it replaces
     AsyncDecision decision;
 };
-/// Compares home, list schedule and the previous schedule (or none) in the queue model, and takes what pays. Without
+/// Compares home, list schedule and the earlier one (or none) in the queue model, and takes what pays. Without
 /// CompileOptions::reordering only the queues are chosen, and each keeps the order of the items.
 [[nodiscard]] Decided decide(const Work& work, const QueueChoices& choices, const CompileOptions& options,
-                             const Costs& costs, const ItemSchedule& previous);
+                             const Costs& costs, const ItemSchedule& earlier);
 
 /// A schedule with all waits that it turned out to need: some only the uses tell, as a layout that is changed once for
 /// readers on several queues. Its run is what simulate() says of the finished plan. Items are slots.

@@ -45,22 +45,23 @@ Optimality optimality(const GraphDesc& graph, const Plan& plan, const Timeline& 
     return out;
 }
 
-std::string to_text(const Optimality& o) {
+std::string to_text(const Optimality& figures) {
     const auto nanoseconds = [](std::int64_t ns) { return ns > 0 ? static_cast<std::uint64_t>(ns) : 0; };
-    std::string text = "transient memory " + mebibytes_text(o.transient_bytes) + ", at least " +
-                       mebibytes_text(o.transient_bound_bytes) + " are in use at once" +
-                       over(o.transient_bytes, o.transient_bound_bytes) + "; without sharing " +
-                       mebibytes_text(o.transient_bytes_unaliased);
-    if (o.history_bytes > 0) {
-        text += "; history, both copies, " + mebibytes_text(o.history_bytes);
+    std::string text = "transient memory " + mebibytes_text(figures.transient_bytes) + ", at least " +
+                       mebibytes_text(figures.transient_bound_bytes) + " are in use at once" +
+                       over(figures.transient_bytes, figures.transient_bound_bytes) + "; without sharing " +
+                       mebibytes_text(figures.transient_bytes_unaliased);
+    if (figures.history_bytes > 0) {
+        text += "; history, both copies, " + mebibytes_text(figures.history_bytes);
     }
-    text += "\nframe " + milliseconds_text(o.makespan_ns) + " predicted, on these queues at least " +
-            milliseconds_text(o.makespan_bound_ns) +
-            over(nanoseconds(o.makespan_ns), nanoseconds(o.makespan_bound_ns)) + "; on one queue " +
-            milliseconds_text(o.serial_ns);
-    text += "\n" + std::to_string(o.barrier_count) + " barriers in " + std::to_string(o.barrier_call_count) +
-            " calls, " + std::to_string(o.transition_count) + " change a layout, " + std::to_string(o.ownership_count) +
-            " change the owner; " + std::to_string(o.batch_count) + " submissions, " + std::to_string(o.wait_count) +
+    text += "\nframe " + milliseconds_text(figures.makespan_ns) + " predicted, on these queues at least " +
+            milliseconds_text(figures.makespan_bound_ns) +
+            over(nanoseconds(figures.makespan_ns), nanoseconds(figures.makespan_bound_ns)) + "; on one queue " +
+            milliseconds_text(figures.serial_ns);
+    text += "\n" + std::to_string(figures.barrier_count) + " barriers in " +
+            std::to_string(figures.barrier_call_count) + " calls, " + std::to_string(figures.transition_count) +
+            " change a layout, " + std::to_string(figures.ownership_count) + " change the owner; " +
+            std::to_string(figures.batch_count) + " submissions, " + std::to_string(figures.wait_count) +
             " waits between queues\n";
     return text;
 }

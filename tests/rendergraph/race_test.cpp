@@ -23,7 +23,8 @@ std::atomic<std::uint32_t> reports = 0;
 
 } // namespace
 
-// The sanitiser calls these; the reports are counted here and not printed.
+// The sanitiser calls these, by these names; the reports are counted here and not printed.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
 extern "C" {
 void __tsan_on_report(void* /*report*/);
 void __tsan_on_report(void* /*report*/) {
@@ -35,6 +36,7 @@ const char* __tsan_default_options() {
            "symbolize=0:report_signal_unsafe=0:report_thread_leaks=0";
 }
 }
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 
 namespace tyndall::rg::test {
 namespace {
