@@ -1,5 +1,7 @@
 #include "rendergraph/compile.hpp"
 
+#include <algorithm>
+
 #include "rendergraph/assign.hpp"
 #include "rendergraph/stages.hpp"
 #include "rendergraph/variants.hpp"
@@ -9,6 +11,21 @@ namespace {
 
 void append(Diagnostics& to, Diagnostics from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+/// What was ordered through a culled pass must be ordered directly: where one comes before a kept pass, versions are
+/// followed again without it.
+stages::Flow flow_between_kept(const GraphDesc& graph, const stages::Cells& cells, stages::Flow& everything,
+                               const stages::Kept& kept) {
+    const auto culled = [&](std::uint32_t pass) { return !kept.pass[pass]; };
+    const bool goes_through = std::any_of(everything.edges.begin(), everything.edges.end(),
+                                          [&](const auto& edge) { return culled(edge.from) && !culled(edge.to); });
+    if (goes_through) {
+        return follow_versions(graph, cells, &kept.pass);
+    }
+    stages::Flow flow = std::move(everything);
+    std::erase_if(flow.edges, [&](const auto& edge) { return culled(edge.to); });
+    return flow;
 }
 
 /// The decided schedule, unless waits that only a schedule knows cost what it gained.
@@ -65,7 +82,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
                                               const Costs& costs, const Plan* previous, std::uint64_t passes_hash) {
     using namespace stages;
     const Cells cells = cut_into_cells(graph);
-    const Flow everything = follow_versions(graph, cells);
+    Flow everything = follow_versions(graph, cells);
     Diagnostics errors = everything.errors;
     const Order order = order_passes(graph, everything);
     append(errors, order.errors);
@@ -73,8 +90,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
         return tl::unexpected(std::move(errors));
     }
     Kept kept = cull(graph, everything, order, options.culling);
-    // What was ordered through a culled pass must be ordered directly.
-    const Flow flow = kept.culled_passes.empty() ? everything : follow_versions(graph, cells, &kept.pass);
+    const Flow flow = flow_between_kept(graph, cells, everything, kept);
     const QueueChoices choices = choose_queues(graph, topology, kept, options.async);
     const Work work = collect_work(flow, order, kept, choices, topology, costs);
     Decided decided =

@@ -34,6 +34,7 @@ public:
         out_.resting_layout.assign(graph_.resources.size(), VK_IMAGE_LAYOUT_UNDEFINED);
         out_.releases.resize(batches_.batches.size());
         decide_resting_layouts();
+        all_.reserve(schedule_.uses.size());
         for (std::uint32_t resource = 0; resource < graph_.resources.size(); ++resource) {
             visit(resource);
         }

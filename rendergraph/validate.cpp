@@ -3,7 +3,8 @@
 // O(accesses + accesses of each pass squared).
 #include <algorithm>
 #include <bit>
-#include <map>
+#include <functional>
+#include <string_view>
 
 #include "rendergraph/stages.hpp"
 
@@ -21,6 +22,25 @@ std::string_view verb(Direction direction) {
     case Direction::modify: return "modifies";
     }
     return "";
+}
+
+/// Calls `f(item, first)` for every item that has the name of an earlier one, `first` being the first of that name.
+/// A hash table with linear probing, at most half full. O(items).
+template <typename T, typename F>
+void for_each_repeated(const std::vector<T>& items, F&& f) {
+    const std::size_t mask = std::bit_ceil(2 * items.size() + 1) - 1;
+    std::vector<std::uint32_t> table(mask + 1, none);
+    for (std::uint32_t i = 0; i < items.size(); ++i) {
+        std::size_t at = std::hash<std::string_view>{}(items[i].name) & mask;
+        while (table[at] != none && items[table[at]].name != items[i].name) {
+            at = (at + 1) & mask;
+        }
+        if (table[at] == none) {
+            table[at] = i;
+        } else {
+            f(items[i], items[table[at]]);
+        }
+    }
 }
 
 class Validator {
@@ -53,28 +73,20 @@ public:
 
 private:
     void names() {
-        std::map<std::string_view, const ResourceDesc*> resources;
-        for (const ResourceDesc& resource : graph_.resources) {
-            const auto [at, added] = resources.emplace(resource.name, &resource);
-            if (!added) {
-                errors_.push_back({.code = DiagnosticCode::duplicate_name,
-                                   .resource = resource.name,
-                                   .message = "Two resources are called " + quoted(resource.name) + "; rename one",
-                                   .where = resource.where,
-                                   .other_where = at->second->where});
-            }
-        }
-        std::map<std::string_view, const PassDesc*> passes;
-        for (const PassDesc& pass : graph_.passes) {
-            const auto [at, added] = passes.emplace(pass.name, &pass);
-            if (!added) {
-                errors_.push_back({.code = DiagnosticCode::duplicate_name,
-                                   .pass = pass.name,
-                                   .message = "Two passes are called " + quoted(pass.name) + "; rename one",
-                                   .where = pass.where,
-                                   .other_where = at->second->where});
-            }
-        }
+        for_each_repeated(graph_.resources, [&](const ResourceDesc& resource, const ResourceDesc& first) {
+            errors_.push_back({.code = DiagnosticCode::duplicate_name,
+                               .resource = resource.name,
+                               .message = "Two resources are called " + quoted(resource.name) + "; rename one",
+                               .where = resource.where,
+                               .other_where = first.where});
+        });
+        for_each_repeated(graph_.passes, [&](const PassDesc& pass, const PassDesc& first) {
+            errors_.push_back({.code = DiagnosticCode::duplicate_name,
+                               .pass = pass.name,
+                               .message = "Two passes are called " + quoted(pass.name) + "; rename one",
+                               .where = pass.where,
+                               .other_where = first.where});
+        });
     }
 
     void bad(const ResourceDesc& resource, DiagnosticCode code, const std::string& what) {
