@@ -12,6 +12,10 @@ Work collect_work(const Flow& flow, const Order& order, const Kept& kept, const 
     Work work;
     work.queue_count = static_cast<std::uint32_t>(topology.queues.size());
     work.item_of.assign(kept.pass.size(), none);
+    work.pass.reserve(order.passes.size());
+    work.allowed.reserve(order.passes.size());
+    work.home.reserve(order.passes.size());
+    work.duration_ns.reserve(order.passes.size());
     for (const std::uint32_t pass : order.passes) {
         if (kept.pass[pass]) {
             work.item_of[pass] = static_cast<std::uint32_t>(work.pass.size());

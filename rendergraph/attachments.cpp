@@ -42,6 +42,7 @@ Attachments choose_attachment_operations(const GraphDesc& graph, const Cells& ce
         return any;
     };
     Attachments out;
+    out.first_of_slot.reserve(schedule.order.size() + 1);
     out.first_of_slot.assign(1, 0);
     for (const std::uint32_t pass_index : schedule.order) {
         const PassDesc& pass = graph.passes[pass_index];

@@ -18,6 +18,7 @@ Batches make_batches(const GraphDesc& graph, const Schedule& schedule) {
     // Open batches in the order of their first pass: a batch waits only for batches that ended before it began, so the
     // numbering looks backward.
     Batches out;
+    out.batches.reserve(2 * schedule.waits.size() + schedule.queue_count); // at most
     out.batch_of.assign(count, 0);
     std::vector<std::uint32_t> open(schedule.queue_count, none);
     for (std::uint32_t slot = 0; slot < count; ++slot) {

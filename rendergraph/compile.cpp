@@ -145,7 +145,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
         plan.statistics.transient_bytes += heap.size_bytes;
     }
     plan.statistics.transient_bytes_unaliased = placed.unaliased_bytes;
-    plan.statistics.largest_live_set_bytes = placed.largest_live_set_bytes;
+    plan.statistics.transient_bound_bytes = placed.bound_bytes;
     plan.statistics.barrier_count = static_cast<std::uint32_t>(plan.dependencies.size());
     plan.decision = decided.decision;
     plan.passes_hash = passes_hash;

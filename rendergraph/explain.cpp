@@ -125,7 +125,7 @@ std::string explain_table(const GraphDesc& graph, const Plan& plan, std::span<co
     }
     text += "transient memory " + mebibytes_text(plan.statistics.transient_bytes) + ", without sharing " +
             mebibytes_text(plan.statistics.transient_bytes_unaliased) + ", at least " +
-            mebibytes_text(plan.statistics.largest_live_set_bytes) + " are live at once\n";
+            mebibytes_text(plan.statistics.transient_bound_bytes) + " are needed\n";
     text += describe(plan.decision) + "\n";
     return text;
 }

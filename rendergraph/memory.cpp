@@ -15,6 +15,7 @@ MemoryRequirements estimate_memory(const GraphDesc& graph) {
         return (size + alignment - 1) / alignment * alignment;
     };
     MemoryRequirements requirements;
+    requirements.of_resource.reserve(graph.resources.size());
     for (const ResourceDesc& resource : graph.resources) {
         MemoryRequirement& out = requirements.of_resource.emplace_back();
         if (resource.kind == ResourceKind::buffer) {
@@ -73,6 +74,7 @@ void find_owners_before(std::span<const Block> blocks, const Packing& packing, M
     };
     std::vector<std::vector<Owned>> heaps(packing.heap_bytes.size()); // each by begin, without overlap
     std::vector<Owned> remains;
+    memory.owners_before.reserve(blocks.size());
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         std::vector<Owned>& owners = heaps[blocks[i].heap];
         const Owned block{packing.offset_bytes[i], packing.offset_bytes[i] + blocks[i].size_bytes, blocks[i].resource};
@@ -145,6 +147,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     memory.first_owner_before.resize(count, 0);
     memory.owner_before_count.resize(count, 0);
     std::vector<Block> blocks;
+    blocks.reserve(count);
     for (std::uint32_t resource = 0; resource < count; ++resource) {
         const ResourceDesc& desc = graph.resources[resource];
         Placement& placement = memory.placements[resource];
@@ -207,8 +210,12 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
                      [](const Block& a, const Block& b) { return a.first_slot < b.first_slot; });
     const auto heap_count = static_cast<std::uint32_t>(memory.heaps.size());
     const Lives lives = find_lives(schedule, blocks);
-    const Packing packing = aliasing ? pack(blocks, find_conflicts(schedule, blocks, lives), heap_count)
-                                     : pack_without_sharing(blocks, heap_count);
+    const Conflicts conflicts = find_conflicts(schedule, blocks, lives);
+    const std::size_t tries = std::clamp<std::size_t>(blocks.size() / 8, 2, 16); // cheap beside the packing
+    memory.bound_bytes = std::max(exclusive_bytes(blocks, conflicts, lives, heap_count, tries),
+                                  largest_live_set(schedule, blocks, lives));
+    const Packing packing =
+        aliasing ? pack(blocks, conflicts, heap_count, memory.bound_bytes) : pack_without_sharing(blocks, heap_count);
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         Placement& placement = memory.placements[blocks[i].resource];
         placement.heap = blocks[i].heap;
@@ -225,7 +232,6 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             memory.placements[block.resource].shares_with = before.front();
         }
     }
-    memory.largest_live_set_bytes = largest_live_set(schedule, blocks, lives);
     return memory;
 }
 

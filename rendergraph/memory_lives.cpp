@@ -2,6 +2,7 @@
 // In: the schedule's partial order. Out: for each block its first and last positions by queue, and its conflicts.
 // Invariant: two blocks without a conflict are ordered, all uses of one before all uses of the other.
 #include <algorithm>
+#include <numeric>
 
 #include "rendergraph/memory_types.hpp"
 
@@ -10,6 +11,9 @@ namespace {
 
 std::vector<std::vector<std::uint32_t>> slots_by_queue(const Schedule& schedule) {
     std::vector<std::vector<std::uint32_t>> slots(schedule.queue_count);
+    for (std::vector<std::uint32_t>& of_queue : slots) {
+        of_queue.reserve(schedule.order.size());
+    }
     for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
         slots[schedule.queue[slot]].push_back(slot);
     }
@@ -71,7 +75,9 @@ Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks
         std::uint32_t b;
     };
     std::vector<Pair> pairs;
+    pairs.reserve(8 * blocks.size());
     std::vector<std::uint32_t> active;
+    active.reserve(blocks.size());
     std::vector<std::uint32_t> frontier(queues, 0); // position of the first slot of each queue that is still to come
     std::uint32_t slot = 0;
     for (std::uint32_t block = 0; block < blocks.size(); ++block) {
@@ -103,6 +109,55 @@ Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks
         conflicts.with[next[pair.b]++] = pair.a;
     }
     return conflicts;
+}
+
+VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& conflicts, const Lives& lives,
+                             std::uint32_t heap_count, std::size_t tries) {
+    struct Start {
+        VkDeviceSize weight;
+        std::uint32_t block;
+    };
+    std::vector<Start> starts(blocks.size());
+    for (std::uint32_t block = 0; block < blocks.size(); ++block) {
+        starts[block] = {blocks[block].size_bytes, block};
+        for (const std::uint32_t other : conflicts.of(block)) {
+            starts[block].weight += other < block ? blocks[other].size_bytes : 0;
+        }
+    }
+    tries = std::min(tries, starts.size());
+    std::partial_sort(
+        starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(tries), starts.end(),
+        [](const Start& a, const Start& b) { return a.weight != b.weight ? a.weight > b.weight : a.block < b.block; });
+    std::vector<VkDeviceSize> largest(heap_count, 0);
+    for (const Block& block : blocks) {
+        largest[block.heap] = std::max(largest[block.heap], block.size_bytes);
+    }
+    std::vector<std::uint32_t> set;
+    const auto exclude_each_other = [&](std::uint32_t a, std::uint32_t b) {
+        return !lives.entirely_before(a, b) && !lives.entirely_before(b, a);
+    };
+    const auto grow = [&](std::uint32_t start, std::span<const std::uint32_t> others) {
+        set.assign(1, start);
+        VkDeviceSize bytes = blocks[start].size_bytes;
+        for (const std::uint32_t other : others) {
+            if (std::all_of(set.begin() + 1, set.end(),
+                            [&](auto member) { return exclude_each_other(member, other); })) {
+                set.push_back(other);
+                bytes += blocks[other].size_bytes;
+            }
+        }
+        largest[blocks[start].heap] = std::max(largest[blocks[start].heap], bytes);
+    };
+    std::vector<std::uint32_t> by_size;
+    for (const Start& start : std::span(starts).first(tries)) {
+        const std::span<const std::uint32_t> as_they_come = conflicts.of(start.block);
+        grow(start.block, as_they_come);
+        by_size.assign(as_they_come.begin(), as_they_come.end());
+        std::stable_sort(by_size.begin(), by_size.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return blocks[a].size_bytes > blocks[b].size_bytes; });
+        grow(start.block, by_size);
+    }
+    return std::accumulate(largest.begin(), largest.end(), VkDeviceSize{0});
 }
 
 } // namespace tyndall::rg::stages

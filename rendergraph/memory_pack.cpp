@@ -19,6 +19,7 @@ struct Extent {
 };
 
 constexpr VkDeviceSize unplaced = ~VkDeviceSize{0};
+constexpr std::size_t most_steps = 8192; ///< blocks placed on the way to a better packing, from each order
 
 /// The lowest offset at which the block overlaps none of `taken`.
 VkDeviceSize lowest_gap(std::span<const Extent> taken, const Block& block) {
@@ -55,16 +56,20 @@ VkDeviceSize smallest_gap(std::span<Extent> taken, const Block& block, VkDeviceS
     return best_size == ~VkDeviceSize{0} || fits_at_end ? offset : best;
 }
 
-/// Places blocks one by one, each where `find_gap(taken, block, heap_bytes)` says. False, with `packing` unfinished,
-/// once it is not going to stay below `limit_bytes` in total.
+/// Places blocks one by one, each where `find_gap(taken, block, heap_bytes)` says. Stops at the block with which the
+/// total no longer stays below `limit_bytes`, and returns its place in `order`; the order's length where all stay below
+/// it.
 template <typename FindGap>
-bool pack_in_order(std::span<const Block> blocks, const Conflicts& conflicts, std::span<const std::uint32_t> order,
-                   FindGap&& find_gap, VkDeviceSize limit_bytes, Packing& packing) {
+std::size_t pack_in_order(std::span<const Block> blocks, const Conflicts& conflicts,
+                          std::span<const std::uint32_t> order, FindGap&& find_gap, VkDeviceSize limit_bytes,
+                          Packing& packing) {
     std::vector<Extent> placed(blocks.size(), {unplaced, unplaced});
     std::vector<Extent> taken;
+    taken.reserve(blocks.size());
     std::fill(packing.heap_bytes.begin(), packing.heap_bytes.end(), 0);
     packing.total_bytes = 0;
-    for (const std::uint32_t i : order) {
+    for (std::size_t at = 0; at < order.size(); ++at) {
+        const std::uint32_t i = order[at];
         const Block& block = blocks[i];
         taken.clear();
         for (const std::uint32_t other : conflicts.of(i)) {
@@ -79,46 +84,54 @@ bool pack_in_order(std::span<const Block> blocks, const Conflicts& conflicts, st
         packing.total_bytes += grown - heap_bytes;
         heap_bytes = grown;
         if (packing.total_bytes >= limit_bytes) {
-            return false;
+            return at;
         }
     }
     std::transform(placed.begin(), placed.end(), packing.offset_bytes.begin(),
                    [](const Extent& extent) { return extent.begin; });
-    return true;
+    return order.size();
 }
 
 } // namespace
 
-Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count) {
+Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
+             VkDeviceSize bound_bytes) {
     Packing best{std::vector<VkDeviceSize>(blocks.size()), std::vector<VkDeviceSize>(heap_count)};
     Packing other = best;
     std::vector<std::uint32_t> as_they_come(blocks.size()); // by first slot
     std::iota(as_they_come.begin(), as_they_come.end(), 0U);
     const auto descending_by = [&](auto key) {
         std::vector<std::uint32_t> order = as_they_come;
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return key(blocks[a]) > key(blocks[b]); });
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            const auto key_a = key(blocks[a]);
+            const auto key_b = key(blocks[b]);
+            return key_a != key_b ? key_a > key_b : a < b;
+        });
         return order;
     };
-    const auto consider = [&](std::span<const std::uint32_t> order) {
-        const auto find_gap = [](std::span<const Extent> taken, const Block& block, VkDeviceSize /*heap_bytes*/) {
-            return lowest_gap(taken, block);
-        };
-        if (pack_in_order(blocks, conflicts, order, find_gap, best.total_bytes, other)) {
-            std::swap(best, other);
-        }
+    const auto find_lowest = [](std::span<const Extent> taken, const Block& block, VkDeviceSize /*heap_bytes*/) {
+        return lowest_gap(taken, block);
     };
     const auto life = [](const Block& block) { return block.last_slot - block.first_slot + 1; };
-    const std::vector<std::uint32_t> by_size = descending_by([](const Block& block) { return block.size_bytes; });
-    pack_in_order(blocks, conflicts, by_size, smallest_gap, unplaced, best);
-    const std::vector<std::uint32_t> by_life = descending_by(life);
-    consider(by_life);
-    const std::vector<std::uint32_t> by_both =
-        descending_by([&](const Block& block) { return block.size_bytes * life(block); });
-    if (by_both != by_life) {
-        consider(by_both);
-    }
-    consider(as_they_come);
+    std::vector<std::uint32_t> order = descending_by([](const Block& block) { return block.size_bytes; });
+    pack_in_order(blocks, conflicts, order, smallest_gap, unplaced, best);
+
+    const auto improve = [&](std::vector<std::uint32_t> tried, std::size_t rounds) {
+        for (std::size_t round = 0; round < rounds && best.total_bytes > bound_bytes; ++round) {
+            const std::size_t end = pack_in_order(blocks, conflicts, tried, find_lowest, best.total_bytes, other);
+            if (end == tried.size()) {
+                std::swap(best, other);
+            } else {
+                const auto culprit = tried.begin() + static_cast<std::ptrdiff_t>(end);
+                std::rotate(tried.begin(), culprit, culprit + 1);
+            }
+        }
+    };
+    const std::size_t rounds = std::clamp<std::size_t>(most_steps / std::max<std::size_t>(blocks.size(), 1), 1, 64);
+    improve(descending_by(life), rounds);
+    improve(descending_by([&](const Block& block) { return block.size_bytes * life(block); }), rounds);
+    improve(as_they_come, rounds);
+    improve(std::move(order), rounds);
     return best;
 }
 

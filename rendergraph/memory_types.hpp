@@ -53,14 +53,22 @@ struct Conflicts {
 /// follows the number of conflicts and not the square of the blocks.
 [[nodiscard]] Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives);
 
+/// Bytes that no packing can do without: for each heap the largest set found of blocks that all exclude each other.
+/// Greedy from the `tries` blocks whose conflicts weigh most. O(conflicts + tries x row squared x queues).
+[[nodiscard]] VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& conflicts,
+                                           const Lives& lives, std::uint32_t heap_count, std::size_t tries);
+
 struct Packing {
     std::vector<VkDeviceSize> offset_bytes; ///< by block
     std::vector<VkDeviceSize> heap_bytes;   ///< by heap
     VkDeviceSize total_bytes = 0;
 };
-/// Tries several greedy orders and keeps the lowest total, the first of equals: by size, descending, each into the
-/// smallest gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, and
-/// by first slot. O(conflicts x log).
-[[nodiscard]] Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count);
+/// Greedy orders, of which the lowest total is kept, the first of equals: by size, descending, each into the smallest gap
+/// that fits; then each into the lowest gap, by length of life, by size times that, both descending, by first slot, and
+/// by size again. From each of these last four the block with which the best total is reached goes to the front and the
+/// order is tried again, a bounded number of times. Ends at `bound_bytes`, below which there is nothing.
+/// O(orders x conflicts x log), the number of tries falling with the number of blocks.
+[[nodiscard]] Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
+                           VkDeviceSize bound_bytes);
 
 } // namespace tyndall::rg::stages

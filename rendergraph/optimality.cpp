@@ -20,7 +20,7 @@ Optimality optimality(const GraphDesc& graph, const Plan& plan, const Timeline& 
     Optimality out;
     out.transient_bytes = plan.statistics.transient_bytes;
     out.transient_bytes_unaliased = plan.statistics.transient_bytes_unaliased;
-    out.transient_bound_bytes = plan.statistics.largest_live_set_bytes;
+    out.transient_bound_bytes = plan.statistics.transient_bound_bytes;
     for (std::uint32_t r = 0; r < plan.placements.size(); ++r) {
         const bool both_copies = plan.placements[r].kind == PlacementKind::history && graph.resources[r].has_history;
         out.history_bytes += both_copies ? 2 * plan.placements[r].size_bytes : 0;
@@ -48,7 +48,7 @@ Optimality optimality(const GraphDesc& graph, const Plan& plan, const Timeline& 
 std::string to_text(const Optimality& figures) {
     const auto nanoseconds = [](std::int64_t ns) { return ns > 0 ? static_cast<std::uint64_t>(ns) : 0; };
     std::string text = "transient memory " + mebibytes_text(figures.transient_bytes) + ", at least " +
-                       mebibytes_text(figures.transient_bound_bytes) + " are in use at once" +
+                       mebibytes_text(figures.transient_bound_bytes) + " are needed" +
                        over(figures.transient_bytes, figures.transient_bound_bytes) + "; without sharing " +
                        mebibytes_text(figures.transient_bytes_unaliased);
     if (figures.history_bytes > 0) {

@@ -226,7 +226,7 @@ struct VariantDecision {
 struct PlanStatistics {
     VkDeviceSize transient_bytes = 0;           ///< sum of heaps
     VkDeviceSize transient_bytes_unaliased = 0; ///< what it would be without sharing
-    VkDeviceSize largest_live_set_bytes = 0;    ///< lower bound: mutually unordered resources at one slot
+    VkDeviceSize transient_bound_bytes = 0;     ///< no packing is smaller: resources that exclude each other
     std::uint32_t barrier_count = 0;            ///< Dependency records before passes
     std::uint32_t wait_count = 0;
 };

@@ -194,7 +194,7 @@ template <typename V>
 void fields(V& v, PlanStatistics& s) {
     v.value("transient_bytes", s.transient_bytes);
     v.value("transient_bytes_unaliased", s.transient_bytes_unaliased);
-    v.value("largest_live_set_bytes", s.largest_live_set_bytes);
+    v.value("transient_bound_bytes", s.transient_bound_bytes);
     v.value("barrier_count", s.barrier_count);
     v.value("wait_count", s.wait_count);
 }

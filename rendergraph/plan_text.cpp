@@ -201,8 +201,8 @@ std::string to_text(const GraphDesc& graph, const Plan& plan) {
         }
     }
     text += "transient bytes " + std::to_string(plan.statistics.transient_bytes) + ", without sharing " +
-            std::to_string(plan.statistics.transient_bytes_unaliased) + ", largest live set " +
-            std::to_string(plan.statistics.largest_live_set_bytes) + "\n";
+            std::to_string(plan.statistics.transient_bytes_unaliased) + ", at least " +
+            std::to_string(plan.statistics.transient_bound_bytes) + "\n";
     return text;
 }
 

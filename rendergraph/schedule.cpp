@@ -5,6 +5,7 @@
 // Where readers on several queues need one thing done once (a layout transition, or a host semaphore waited for) and no
 // writer before them can do it, the first reader does, so the others are ordered after it.
 #include <algorithm>
+#include <numeric>
 
 #include "rendergraph/stages.hpp"
 
@@ -58,6 +59,7 @@ void collect_uses(const GraphDesc& graph, const Cells& cells, Schedule& schedule
         }
     }
     // Merging left holes.
+    schedule.first_use.reserve(resources + 1);
     schedule.first_use.assign(1, 0);
     auto to = schedule.uses.begin();
     for (std::uint32_t resource = 0; resource < resources; ++resource) {
@@ -104,13 +106,9 @@ private:
         }
         order_around_host_semaphores(graph_.resources[resource].import, uses);
         const ResourceCells& of = cells_.of_resource[resource];
-        cell_uses_.resize(std::max<std::size_t>(cell_uses_.size(), of.count()));
-        for (const Use& use : uses) {
-            for_each_cell(of, use.cells, [&](std::uint32_t cell) { cell_uses_[cell].push_back(&use); });
-        }
+        cell_uses_.sort(of, uses);
         for (std::uint32_t cell = 0; cell < of.count(); ++cell) {
-            visit_cell(resource, cell_uses_[cell], several_families);
-            cell_uses_[cell].clear();
+            visit_cell(resource, cell_uses_.of(cell), several_families);
         }
     }
 
@@ -126,7 +124,7 @@ private:
         }
     }
 
-    void visit_cell(std::uint32_t resource, const std::vector<const Use*>& uses, bool several_families) {
+    void visit_cell(std::uint32_t resource, Uses uses, bool several_families) {
         std::size_t begin = 0;
         std::size_t previous_begin = 0;
         bool previous_is_write = false;
@@ -194,7 +192,7 @@ private:
     const Cells& cells_;
     Schedule& schedule_;
     std::vector<SlotEdge>& edges_;
-    std::vector<std::vector<const Use*>> cell_uses_; ///< by cell; empty between resources
+    CellUses cell_uses_; ///< of the resource at hand
 };
 
 /// Edges grouped by the slot that they lead to; `first` has slots + 1 entries. O(edges + slots).
@@ -264,6 +262,19 @@ void derive_waits(const std::vector<SlotEdge>& edges, Schedule& schedule) {
 
 } // namespace
 
+void CellUses::sort(const ResourceCells& cells, std::span<const Use> uses) {
+    first_.assign(cells.count() + 1, 0);
+    for (const Use& use : uses) {
+        for_each_cell(cells, use.cells, [&](std::uint32_t cell) { ++first_[cell + 1]; });
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    uses_.resize(first_.back());
+    next_.assign(first_.begin(), first_.end() - 1);
+    for (const Use& use : uses) {
+        for_each_cell(cells, use.cells, [&](std::uint32_t cell) { uses_[next_[cell]++] = &use; });
+    }
+}
+
 Schedule schedule(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells, const Flow& flow,
                   const Assignment& assignment) {
     Schedule schedule;
@@ -281,6 +292,7 @@ Schedule schedule(const GraphDesc& graph, const QueueTopology& topology, const C
     collect_uses(graph, cells, schedule);
 
     std::vector<SlotEdge> edges;
+    edges.reserve(flow.edges.size());
     for (const Edge& edge : flow.edges) {
         const std::uint32_t from = schedule.slot_of[edge.from];
         const std::uint32_t to = schedule.slot_of[edge.to];

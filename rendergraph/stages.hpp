@@ -109,6 +109,22 @@ struct Assignment {
     std::vector<std::uint32_t> queue; ///< parallel to order
     std::vector<QueueReason> reason;  ///< parallel to order
 };
+using Uses = std::span<const Use* const>;
+/// The uses of one resource, cell by cell, in slot order. Its memory serves one resource after the other.
+class CellUses {
+public:
+    /// O(uses x cells of each). `uses` must outlive what of() gives.
+    void sort(const ResourceCells& cells, std::span<const Use> uses);
+    [[nodiscard]] Uses of(std::uint32_t cell) const {
+        return {uses_.data() + first_[cell], first_[cell + 1] - first_[cell]};
+    }
+
+private:
+    std::vector<const Use*> uses_;
+    std::vector<std::uint32_t> first_; ///< cells + 1 entries into uses_
+    std::vector<std::uint32_t> next_;
+};
+
 struct QueueWait {
     std::uint32_t slot = 0;     ///< the waiting pass
     std::uint32_t producer = 0; ///< slot waited for
@@ -141,7 +157,7 @@ struct Memory {
     std::vector<Placement> placements;
     std::vector<Heap> heaps;
     VkDeviceSize unaliased_bytes = 0;
-    VkDeviceSize largest_live_set_bytes = 0;
+    VkDeviceSize bound_bytes = 0;                  ///< no packing is smaller
     std::vector<std::uint32_t> owners_before;      ///< of one resource after the other
     std::vector<std::uint32_t> first_owner_before; ///< by resource, into owners_before
     std::vector<std::uint32_t> owner_before_count; ///< by resource

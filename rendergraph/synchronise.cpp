@@ -6,7 +6,6 @@
 // Uses of a cell fall into groups: one write, or reads in one layout. Between two groups there is one dependency a
 // queue, before the first use there, with the masks of all the group's uses on that queue: reads are merged.
 #include <algorithm>
-#include <numeric>
 
 #include "rendergraph/synchronise_types.hpp"
 
@@ -103,27 +102,12 @@ private:
         found_.clear();
         const Before entry = state_on_the_way_in(resource);
         const ResourceCells& of = cells_.of_resource[resource];
-        sort_into_cells(of, uses);
+        cell_uses_.sort(of, uses);
         for (std::uint32_t cell = 0; cell < of.count(); ++cell) {
-            visit_cell(resource, cell,
-                       Uses(cell_uses_).subspan(first_use_[cell], first_use_[cell + 1] - first_use_[cell]), entry);
+            visit_cell(resource, cell, cell_uses_.of(cell), entry);
         }
         for (const CellDependency& found : found_) {
             add_ranges(resource, found);
-        }
-    }
-
-    /// Fills first_use_ and cell_uses_: the uses of each cell, in slot order.
-    void sort_into_cells(const ResourceCells& of, std::span<const Use> uses) {
-        first_use_.assign(of.count() + 1, 0);
-        for (const Use& use : uses) {
-            for_each_cell(of, use.cells, [&](std::uint32_t cell) { ++first_use_[cell + 1]; });
-        }
-        std::partial_sum(first_use_.begin(), first_use_.end(), first_use_.begin());
-        cell_uses_.resize(first_use_.back());
-        next_use_.assign(first_use_.begin(), first_use_.end() - 1);
-        for (const Use& use : uses) {
-            for_each_cell(of, use.cells, [&](std::uint32_t cell) { cell_uses_[next_use_[cell]++] = &use; });
         }
     }
 
@@ -426,9 +410,7 @@ private:
     // Of the resource at hand; members, so that their memory serves all resources.
     std::vector<CellDependency> found_;
     std::vector<const Use*> entry_uses_;
-    std::vector<const Use*> cell_uses_;    ///< cell by cell
-    std::vector<std::uint32_t> first_use_; ///< by cell, cells + 1 entries into cell_uses_
-    std::vector<std::uint32_t> next_use_;
+    CellUses cell_uses_;
 };
 
 } // namespace

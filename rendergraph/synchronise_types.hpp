@@ -11,8 +11,6 @@ inline constexpr VkAccessFlags2 any_write =
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT |
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
 
-using Uses = std::span<const Use* const>;
-
 /// Uses of one cell that need nothing of each other.
 struct Group {
     Uses uses;

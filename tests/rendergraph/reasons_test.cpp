@@ -197,7 +197,7 @@ TEST(Optimality, FiguresOfTheFogFrameAgainstTheirBounds) {
                                                 .ownership_count = 1,
                                                 .batch_count = 5,
                                                 .wait_count = 6});
-    EXPECT_EQ(text, "transient memory 110.00 MiB, at least 100.00 MiB are in use at once, 10.0 % over; without sharing "
+    EXPECT_EQ(text, "transient memory 110.00 MiB, at least 100.00 MiB are needed, 10.0 % over; without sharing "
                     "200.00 MiB\n"
                     "frame 2.00 ms predicted, on these queues at least 2.00 ms, met; on one queue 3.00 ms\n"
                     "4 barriers in 3 calls, 2 change a layout, 1 change the owner; 5 submissions, 6 waits between "
