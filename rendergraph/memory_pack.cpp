@@ -19,6 +19,7 @@ struct Extent {
 };
 
 constexpr VkDeviceSize unplaced = ~VkDeviceSize{0};
+constexpr std::size_t most_exact_blocks = 7;
 constexpr std::size_t most_steps = 8192; ///< blocks placed on the way to a better packing, from each order
 
 /// The lowest offset at which the block overlaps none of `taken`.
@@ -115,6 +116,9 @@ Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uin
     const auto life = [](const Block& block) { return block.last_slot - block.first_slot + 1; };
     std::vector<std::uint32_t> order = descending_by([](const Block& block) { return block.size_bytes; });
     pack_in_order(blocks, conflicts, order, smallest_gap, unplaced, best);
+    if (best.total_bytes <= bound_bytes) {
+        return best;
+    }
 
     const auto improve = [&](std::vector<std::uint32_t> tried, std::size_t rounds) {
         for (std::size_t round = 0; round < rounds && best.total_bytes > bound_bytes; ++round) {
@@ -127,6 +131,13 @@ Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uin
             }
         }
     };
+    if (blocks.size() <= most_exact_blocks) {
+        // Some order is optimal: that of the offsets in an optimal packing.
+        do {
+            improve(as_they_come, 1);
+        } while (std::next_permutation(as_they_come.begin(), as_they_come.end()));
+        return best;
+    }
     const std::size_t rounds = std::clamp<std::size_t>(most_steps / std::max<std::size_t>(blocks.size(), 1), 1, 64);
     improve(descending_by(life), rounds);
     improve(descending_by([&](const Block& block) { return block.size_bytes * life(block); }), rounds);

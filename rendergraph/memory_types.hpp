@@ -63,11 +63,12 @@ struct Packing {
     std::vector<VkDeviceSize> heap_bytes;   ///< by heap
     VkDeviceSize total_bytes = 0;
 };
-/// Greedy orders, of which the lowest total is kept, the first of equals: by size, descending, each into the smallest gap
-/// that fits; then each into the lowest gap, by length of life, by size times that, both descending, by first slot, and
-/// by size again. From each of these last four the block with which the best total is reached goes to the front and the
-/// order is tried again, a bounded number of times. Ends at `bound_bytes`, below which there is nothing.
-/// O(orders x conflicts x log), the number of tries falling with the number of blocks.
+/// Greedy orders, of which the lowest total is kept, the first of equals: by size, descending, each into the smallest
+/// gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, by first slot,
+/// and by size again. From each of these last four the block with which the best total is reached goes to the front and
+/// the order is tried again, a bounded number of times. Up to seven blocks all orders are
+/// tried, which is optimal. Ends at `bound_bytes`, below which there is nothing. O(orders x
+/// conflicts x log), the number of tries falling with the number of blocks.
 [[nodiscard]] Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
                            VkDeviceSize bound_bytes);
 

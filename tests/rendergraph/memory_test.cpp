@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <random>
 
+#include "rendergraph/memory_types.hpp"
 #include "tests/rendergraph/frames.hpp"
 
 namespace tyndall::rg::test {
@@ -220,6 +221,66 @@ TEST(Memory, PlansOfBuffersAndImagesAreNearTheLowerBound) {
             EXPECT_LE(ratios[297], 1.1);
         }
     }
+}
+
+/// Whether blocks of whole units fit below `height` units. Depth first over offsets.
+bool fits(const std::vector<std::uint32_t>& units, const std::vector<std::vector<bool>>& excludes, std::uint32_t height,
+          std::vector<std::uint32_t>& offset) {
+    const std::size_t block = offset.size();
+    if (block == units.size()) {
+        return true;
+    }
+    for (std::uint32_t at = 0; at + units[block] <= height; ++at) {
+        bool free = true;
+        for (std::size_t other = 0; other < block; ++other) {
+            free = free && (!excludes[block][other] || at + units[block] <= offset[other] ||
+                            offset[other] + units[other] <= at);
+        }
+        offset.push_back(at);
+        if (free && fits(units, excludes, height, offset)) {
+            return true;
+        }
+        offset.pop_back();
+    }
+    return false;
+}
+
+TEST(Memory, PackingsOfUpToSevenBlocksAreOptimal) {
+    constexpr VkDeviceSize unit = 256;
+    std::mt19937 random(5);
+    std::uint32_t above_the_largest_block = 0;
+    for (int round = 0; round < 300; ++round) {
+        const std::size_t count = 2 + random() % 6;
+        std::vector<stages::Block> blocks(count);
+        std::vector<std::uint32_t> units(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            units[i] = 1 + random() % 4;
+            blocks[i] = {.size_bytes = units[i] * unit, .alignment = unit, .first_slot = static_cast<std::uint32_t>(i)};
+        }
+        std::vector<std::vector<bool>> excludes(count, std::vector<bool>(count, false));
+        stages::Conflicts conflicts{{0}, {}};
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < i; ++k) {
+                excludes[i][k] = excludes[k][i] = random() % 2 == 0;
+            }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::uint32_t k = 0; k < count; ++k) {
+                if (excludes[i][k]) {
+                    conflicts.with.push_back(k);
+                }
+            }
+            conflicts.first.push_back(static_cast<std::uint32_t>(conflicts.with.size()));
+        }
+        std::uint32_t least = *std::max_element(units.begin(), units.end());
+        const std::uint32_t largest_block = least;
+        for (std::vector<std::uint32_t> offset; !fits(units, excludes, least, offset); offset.clear()) {
+            ++least;
+        }
+        above_the_largest_block += least > largest_block ? 1 : 0;
+        EXPECT_EQ(stages::pack(blocks, conflicts, 1, 0).total_bytes, least * unit) << "round " << round;
+    }
+    EXPECT_GT(above_the_largest_block, 100U);
 }
 
 } // namespace
