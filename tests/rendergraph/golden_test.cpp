@@ -1,26 +1,10 @@
 // Whole plans as readable text. After an intended change run with TYNDALL_UPDATE_GOLDEN=1 and read the difference.
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
-
 #include "rendergraph/explain.hpp"
 #include "tests/rendergraph/frames.hpp"
+#include "tests/rendergraph/golden.hpp"
 
 namespace tyndall::rg::test {
 namespace {
-
-void expect_golden(const std::string& name, const std::string& text) {
-    const std::string path = std::string(TYNDALL_GOLDEN_DIR) + "/" + name + ".txt";
-    if (std::getenv("TYNDALL_UPDATE_GOLDEN") != nullptr) {
-        std::ofstream(path) << text;
-        return;
-    }
-    std::ifstream file(path);
-    ASSERT_TRUE(file.good()) << "no golden file " << path;
-    std::stringstream golden;
-    golden << file.rdbuf();
-    EXPECT_EQ(golden.str(), text);
-}
 
 TEST(Golden, FogFrameOnOneQueue) {
     const DeclaredGraph declared = fog_frame();
