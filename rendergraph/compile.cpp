@@ -13,6 +13,26 @@ void append(Diagnostics& to, Diagnostics from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
+Diagnostics mistakes_of(const stages::Flow& flow, const stages::Order& order) {
+    Diagnostics errors = flow.errors;
+    append(errors, order.errors);
+    return errors;
+}
+
+/// What the data flow adds to mistakes already found, so that one run tells all. Nothing where a missing access or an
+/// impossible range would make it speak of consequences, or where each form of a variant has a flow of its own.
+Diagnostics further_mistakes(const GraphDesc& graph, const Diagnostics& found) {
+    const bool hides_flow = std::any_of(found.begin(), found.end(), [](const Diagnostic& mistake) {
+        return mistake.code == DiagnosticCode::range_outside || mistake.code == DiagnosticCode::bad_description ||
+               mistake.code == DiagnosticCode::foreign_handle;
+    });
+    if (hides_flow || !graph.variants.empty()) {
+        return {};
+    }
+    const stages::Flow flow = stages::follow_versions(graph, stages::cut_into_cells(graph));
+    return mistakes_of(flow, stages::order_passes(graph, flow));
+}
+
 /// What was ordered through a culled pass must be ordered directly: where one comes before a kept pass, versions are
 /// followed again without it.
 stages::Flow flow_between_kept(const GraphDesc& graph, const stages::Cells& cells, stages::Flow& everything,
@@ -83,10 +103,8 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
     using namespace stages;
     const Cells cells = cut_into_cells(graph);
     Flow everything = follow_versions(graph, cells);
-    Diagnostics errors = everything.errors;
     const Order order = order_passes(graph, everything);
-    append(errors, order.errors);
-    if (!errors.empty()) {
+    if (Diagnostics errors = mistakes_of(everything, order); !errors.empty()) {
         return tl::unexpected(std::move(errors));
     }
     Kept kept = cull(graph, everything, order, options.culling);
@@ -160,7 +178,8 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     Diagnostics errors = graph.declaration_errors;
     append(errors, stages::validate(graph, topology));
     if (!errors.empty()) {
-        return tl::unexpected(std::move(errors)); // what follows needs sound ranges
+        append(errors, further_mistakes(graph, errors));
+        return tl::unexpected(std::move(errors));
     }
     const std::uint64_t passes_hash = stages::hash_of_passes(graph);
     const auto compile_form = [&](const GraphDesc& form) {

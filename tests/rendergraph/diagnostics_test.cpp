@@ -259,6 +259,29 @@ TEST(Diagnostics, AllMistakesAreReportedTogether) {
     EXPECT_GE(found.size(), 4U) << to_text(found);
 }
 
+TEST(Diagnostics, MistakesOfPassesAndOfTheDataFlowComeTogether) {
+    GraphBuilder graph;
+    graph.add_pass("idle", PassKind::compute);
+    const Buffer unwritten = graph.create_buffer("unwritten", {.size_bytes = 64});
+    graph.add_pass("use", PassKind::compute).reads(unwritten, Access::storage_compute).has_side_effect("test");
+    const Diagnostics found = mistakes(graph);
+    ASSERT_EQ(found.size(), 2U) << to_text(found);
+    EXPECT_EQ(found[0].code, DiagnosticCode::empty_pass);
+    EXPECT_EQ(found[1].code, DiagnosticCode::read_of_unwritten);
+}
+
+TEST(Diagnostics, ConsequencesOfAForeignHandleAreNotMistakes) {
+    GraphBuilder other;
+    Image foreign = other.create_image("foreign", {.format = VK_FORMAT_R8_UNORM, .extent = {16, 16, 1}});
+    GraphBuilder graph;
+    Buffer buffer = graph.create_buffer("buffer", {.size_bytes = 64});
+    graph.add_pass("write", PassKind::compute).writes(foreign, Access::storage_compute).has_side_effect("test");
+    graph.add_pass("read", PassKind::compute).reads(buffer, Access::storage_compute).has_side_effect("test");
+    for (const Diagnostic& mistake : mistakes(graph)) {
+        EXPECT_NE(mistake.code, DiagnosticCode::read_of_unwritten) << to_text(mistake);
+    }
+}
+
 TEST(Diagnostics, TextNamesFileAndBothLines) {
     GraphBuilder graph;
     (void)graph.create_buffer("same", {.size_bytes = 16});
