@@ -63,7 +63,7 @@ TEST_F(Schedule, EverySampleFrameIsProvedOnEveryTopology) {
 
 TEST_F(Schedule, DeferredFrameHasTheMemoryOfItsKind) {
     const ToolRun run = schedule({frame_file("deferred"), "--queues", "graphics"});
-    expect_in(run.output, "transient memory 129.91 MiB, at least 129.91 MiB are in use at once, met; without sharing "
+    expect_in(run.output, "transient memory 129.91 MiB, at least 129.91 MiB are needed, met; without sharing "
                           "197.58 MiB");
 }
 
