@@ -12,7 +12,7 @@ namespace tyndall::rg {
 struct Optimality {
     VkDeviceSize transient_bytes = 0;
     VkDeviceSize transient_bytes_unaliased = 0;
-    VkDeviceSize transient_bound_bytes = 0; ///< largest set of transients that may be in use at once
+    VkDeviceSize transient_bound_bytes = 0; ///< no packing is smaller
     VkDeviceSize history_bytes = 0;         ///< both copies; outside the bound
     std::int64_t makespan_ns = 0;           ///< predicted
     std::int64_t makespan_bound_ns = 0;     ///< critical path, work that only graphics can do, all work over the queues

@@ -67,7 +67,7 @@ private:
                  "at least " + milliseconds_text(o.makespan_bound_ns)),
             tile("on one queue", milliseconds_text(o.serial_ns), "all passes one after another"),
             tile("transient memory", mebibytes_text(o.transient_bytes),
-                 "at least " + mebibytes_text(o.transient_bound_bytes) + " in use at once"),
+                 "at least " + mebibytes_text(o.transient_bound_bytes) + " needed"),
             tile("without sharing", mebibytes_text(o.transient_bytes_unaliased), "every transient on its own"),
             tile("barriers", std::to_string(o.barrier_count), "in " + std::to_string(o.barrier_call_count) + " calls"),
             tile("waits", std::to_string(o.wait_count), "between " + std::to_string(o.batch_count) + " submissions")};
