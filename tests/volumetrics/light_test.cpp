@@ -227,5 +227,35 @@ TEST_F(LocalLight, InFogIsSteadyAsItCrossesSlices) {
     }
 }
 
+TEST_F(LocalLight, FiveCentimetresFromARayIsSteadyAndExactWithinItsSlice) {
+    // Slices of 1 m; along a froxel's middle ray the light moves through two of them in steps of 8 cm, so that it also
+    // lies at their middles and on their boundary. A sample at the middle of a slice gives a ratio of 40 and more.
+    Scene scene = plain_scene();
+    scene.inputs.settings.grid = {.width = 16, .height = 9, .slices = 64, .range_m = 64.0F, .shape_m = 6400.0F};
+    scene.inputs.medium.homogeneous = {.extinction_per_m = 1e-3F, .albedo = glm::vec3(1.0F)};
+    const glm::dvec3 at_one_metre((2.0 * 9 / 15.0 - 1.0) * tan_x, 0.0, -1.0);
+    const glm::dvec3 ray = glm::normalize(at_one_metre);
+    for (const double g : {0.0}) {
+        scene.inputs.medium.phase_g = static_cast<float>(g);
+        double dimmest = 1e30;
+        double brightest = 0.0;
+        double worst = 0.0;
+        for (int step = 0; step <= 25; ++step) {
+            const glm::dvec3 beside = at_one_metre * (10.0 + 0.08 * step) + glm::dvec3(0.0, 0.05, 0.0);
+            scene.lights = {point_light(glm::vec3(beside), 1000.0F, 100.0F)};
+            const Result result = render(scene);
+            const double found = static_cast<double>(result.accumulated[std::size_t{64} * 16 * 9 + 4 * 16 + 9].r);
+            const double expected = reference(scene, ray, 64.0 * glm::length(at_one_metre), g);
+            dimmest = std::min(dimmest, found / expected);
+            brightest = std::max(brightest, found / expected);
+            worst = std::max(worst, std::abs(found / expected - 1.0));
+        }
+        std::printf("light 5 cm from the ray, g = %.1f: largest ratio between positions %.4f, largest error %.4f\n", g,
+                    brightest / dimmest, worst);
+        EXPECT_LE(brightest / dimmest, 1.05) << g;
+        EXPECT_LE(worst, 0.05) << g;
+    }
+}
+
 } // namespace
 } // namespace tyndall::volumetrics::test
