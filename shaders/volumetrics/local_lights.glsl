@@ -16,10 +16,23 @@ float positive_atan(float y, float x) {
     return x < 0.0 ? 3.14159265 - p : p;
 }
 
-// Phase function times the mean of 1 / d^2 over the segment. The mean is exact (the integral is a difference of arc
-// tangents): sampled at a point, 1 / d^2 would be several times too bright beside the light and flicker as either moves.
-// `d` leads from the sample to the light, `to_light` is of unit length. The phase function as in henyey_greenstein; one
-// division serves all.
+// sin(x) for |x| <= pi / 2, to 4e-6: its Taylor series.
+float sine(float x) {
+    float s = x * x;
+    return x * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0 - s * (1.0 / 362880.0)))));
+}
+
+// Henyey-Greenstein by the squared chord between the directions to the light and to the eye: 2 - 2 cos(theta) for g >= 0,
+// 2 + 2 cos(theta) for g < 0, of which peak = |g|.
+float henyey_greenstein_of_chord(float peak, float chord_squared) {
+    float spread = (1.0 - peak) * (1.0 - peak) + peak * chord_squared;
+    return (1.0 - peak) * (1.0 + peak) / (12.566370614 * spread * sqrt(spread));
+}
+
+// Mean over the segment of phase function / d^2. With h the light's distance from the ray and t = h tan(phi) along it,
+// dt / d^2 = dphi / h: exact for an isotropic phase function, where a sample of 1 / d^2 would be several times too bright
+// beside the light and flicker as either moves. Elsewhere the phase function, p(-sin(phi)), is integrated over phi; where
+// it hardly changes, the segment being seen from the light under a small angle, its value at the sample stands for it. `d` leads from the sample to the light, `to_light` is of unit length.
 float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float radius_m, float g) {
     float along = -dot(d, segment.to_eye); // of the light's foot on the ray, from the sample
     vec3 offset = d + along * segment.to_eye;
@@ -30,12 +43,28 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
     float length_m = max(b - a, 1e-6);
     float angle = positive_atan(h * length_m, h_squared + a * b);
     float peak = abs(g);
-    vec3 chord = g >= 0.0 ? to_light + segment.to_eye : to_light - segment.to_eye;
-    float spread = (1.0 - peak) * (1.0 - peak) + peak * dot(chord, chord);
-    return angle * (1.0 - peak) * (1.0 + peak) / (12.566370614 * spread * sqrt(spread) * h * length_m);
+    float change = angle * 3.0 * peak / (1.0 - peak * peak); // at most, of the phase function's logarithm
+    float phase = 0.0;
+    if (change < 0.7) {
+        vec3 chord = g >= 0.0 ? to_light + segment.to_eye : to_light - segment.to_eye;
+        phase = henyey_greenstein_of_chord(peak, dot(chord, chord));
+    } else {
+        float panels = min(floor(0.5 * change) + 1.0, 16.0);
+        float panel = angle / panels;
+        float middle = 1.57079633 - positive_atan(h, a) + 0.5 * panel; // phi of the first panel's
+        float twice = g >= 0.0 ? 2.0 : -2.0;
+        for (float i = 0.0; i < panels; i += 1.0) {
+            // Gauss-Legendre, two nodes a panel.
+            phase += henyey_greenstein_of_chord(peak, 2.0 + twice * sine(middle - 0.28867513 * panel)) +
+                     henyey_greenstein_of_chord(peak, 2.0 + twice * sine(middle + 0.28867513 * panel));
+            middle += panel;
+        }
+        phase *= 0.5 / panels;
+    }
+    return angle * phase / (h * length_m);
 }
 
-// Adds the in-scattered radiance per scattering coefficient from light `index`. Window, cone and phase are taken at the
+// Adds the in-scattered radiance per scattering coefficient from light `index`. Window and cone are taken at the
 // sample. Exactly 0 beyond the light's range. A macro, since a buffer cannot be passed to a function.
 #define ADD_SCATTERED_FROM_LIGHT(lights, index, segment, g, sum)                                                       \
     {                                                                                                                  \

@@ -235,7 +235,7 @@ TEST_F(LocalLight, FiveCentimetresFromARayIsSteadyAndExactWithinItsSlice) {
     scene.inputs.medium.homogeneous = {.extinction_per_m = 1e-3F, .albedo = glm::vec3(1.0F)};
     const glm::dvec3 at_one_metre((2.0 * 9 / 15.0 - 1.0) * tan_x, 0.0, -1.0);
     const glm::dvec3 ray = glm::normalize(at_one_metre);
-    for (const double g : {0.0}) {
+    for (const double g : {0.0, 0.7, -0.5, 0.95}) {
         scene.inputs.medium.phase_g = static_cast<float>(g);
         double dimmest = 1e30;
         double brightest = 0.0;
