@@ -22,17 +22,18 @@ float sine(float x) {
     return x * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0 - s * (1.0 / 362880.0)))));
 }
 
-// Henyey-Greenstein by the squared chord between the directions to the light and to the eye: 2 - 2 cos(theta) for g >= 0,
-// 2 + 2 cos(theta) for g < 0, of which peak = |g|.
+// Henyey-Greenstein by the squared chord between the directions to the light and to the eye: 2 - 2 cos(theta) for
+// g >= 0, 2 + 2 cos(theta) for g < 0, of which peak = |g|.
 float henyey_greenstein_of_chord(float peak, float chord_squared) {
     float spread = (1.0 - peak) * (1.0 - peak) + peak * chord_squared;
     return (1.0 - peak) * (1.0 + peak) / (12.566370614 * spread * sqrt(spread));
 }
 
 // Mean over the segment of phase function / d^2. With h the light's distance from the ray and t = h tan(phi) along it,
-// dt / d^2 = dphi / h: exact for an isotropic phase function, where a sample of 1 / d^2 would be several times too bright
-// beside the light and flicker as either moves. Elsewhere the phase function, p(-sin(phi)), is integrated over phi; where
-// it hardly changes, the segment being seen from the light under a small angle, its value at the sample stands for it. `d` leads from the sample to the light, `to_light` is of unit length.
+// dt / d^2 = dphi / h: exact for an isotropic phase function, where a sample of 1 / d^2 would be several times too
+// bright beside the light and flicker as either moves. Elsewhere the phase function, p(-sin(phi)), is integrated over
+// phi; where it hardly changes, the segment being seen from the light under a small angle, its value at the sample
+// stands for it. `d` leads from the sample to the light, `to_light` is of unit length.
 float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float radius_m, float g) {
     float along = -dot(d, segment.to_eye); // of the light's foot on the ray, from the sample
     vec3 offset = d + along * segment.to_eye;
