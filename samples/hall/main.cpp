@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "samples/hall/gltf_writer.hpp"
@@ -11,9 +12,12 @@
 
 int main(int argument_count, char** arguments) {
     using namespace tyndall::hall;
-    if (argument_count != 2) {
-        std::fputs("usage: generate_hall FOLDER (made when missing; the scene is FOLDER/hall.gltf)\n", stderr);
-        return 2;
+    const std::string_view argument = argument_count == 2 ? arguments[1] : "";
+    const bool asks_for_help = argument == "--help" || argument == "-h";
+    if (asks_for_help || argument.empty() || argument.front() == '-') {
+        std::fputs("usage: generate_hall FOLDER (made when missing; the scene is FOLDER/hall.gltf)\n",
+                   asks_for_help ? stdout : stderr);
+        return asks_for_help ? 0 : 2;
     }
     const std::filesystem::path folder = arguments[1];
     std::error_code failure;
