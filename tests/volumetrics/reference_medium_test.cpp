@@ -1,0 +1,50 @@
+// The reference's phase function and optical depths against sums that know nothing of their closed forms.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "features/volumetrics/reference/medium.hpp"
+
+namespace tyndall::volumetrics::reference {
+namespace {
+
+TEST(ReferenceMedium, PhaseIntegratesToOne) {
+    for (const double g : {-0.999, -0.7, 0.0, 0.3, 0.9, 0.999}) {
+        // Midpoints over u with 1 - |cos| from the peak = 2 u^8, so that the peak gets its share of nodes.
+        constexpr int count = 200000;
+        double sum = 0.0;
+        for (int i = 0; i < count; ++i) {
+            const double u = (i + 0.5) / count;
+            const double cos_theta = (g < 0.0 ? -1.0 : 1.0) * (1.0 - 2.0 * std::pow(u, 8.0));
+            sum += henyey_greenstein(g, cos_theta) * 16.0 * std::pow(u, 7.0) / count;
+        }
+        EXPECT_NEAR(2.0 * std::numbers::pi * sum, 1.0, 1e-6) << g;
+    }
+    EXPECT_GT(henyey_greenstein(0.5, 1.0), henyey_greenstein(0.5, -1.0)); // g > 0 scatters forward
+}
+
+TEST(ReferenceMedium, OpticalDepthEqualsTheSum) {
+    Medium medium;
+    medium.homogeneous.extinction_per_m = 0.03F;
+    medium.height.extinction_per_m = 0.5F;
+    medium.height.base_height_m = 1.0F;
+    medium.height.falloff_per_m = 0.7F;
+    const glm::dvec3 from{1.0, -2.0, 3.0};
+    for (const double y : {-5.0, -2.0, 0.5, 1.0, 6.0, 40.0}) {
+        const glm::dvec3 to{4.0, y, -9.0};
+        const double length_m = std::hypot(3.0, y + 2.0, 12.0);
+        constexpr int count = 200000;
+        double sum = 0.0;
+        for (int i = 0; i < count; ++i) {
+            const double height_m = -2.0 + (y + 2.0) * (i + 0.5) / count - 1.0;
+            sum += 0.03 + 0.5 * std::exp(-0.7 * std::fmax(0.0, height_m));
+        }
+        const double expected = sum * length_m / count;
+        EXPECT_NEAR(closed_optical_depth(medium, from, to), expected, 1e-6 * expected) << y;
+        EXPECT_NEAR(closed_optical_depth(medium, to, from), expected, 1e-6 * expected) << y;
+    }
+}
+
+} // namespace
+} // namespace tyndall::volumetrics::reference
