@@ -1,47 +1,65 @@
 // The physics of fog in double precision, written from its definitions; shares no arithmetic with the shaders.
 #pragma once
 
-#include <cmath>
-#include <numbers>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "features/volumetrics/reference/geometry.hpp"
 #include "features/volumetrics/settings.hpp"
 
 namespace tyndall::volumetrics::reference {
 
 /// Henyey and Greenstein 1941, per steradian. `cos_theta`: 1 is forward scattering; g in (-1, 1).
-[[nodiscard]] inline double henyey_greenstein(double g, double cos_theta) {
-    // The sum of two terms that are never negative: no cancellation near g = 1.
-    const double denominator = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cos_theta);
-    return (1.0 - g * g) / (4.0 * std::numbers::pi * denominator * std::sqrt(denominator));
-}
+[[nodiscard]] double henyey_greenstein(double g, double cos_theta);
+
+/// The medium's phase function.
+[[nodiscard]] double phase(const Medium& medium, double cos_theta);
 
 /// Integral of e^(-falloff max(0, y)) along a straight way of `length_m` from height `from_m` to `to_m`, both above the
 /// base of the fog. In metres.
-[[nodiscard]] inline double height_integral(double falloff_per_m, double from_m, double to_m, double length_m) {
-    const double rise_m = std::abs(to_m - from_m);
-    const double low_m = std::fmin(from_m, to_m);
-    const double high_m = std::fmax(from_m, to_m);
-    if (high_m <= 0.0) {
-        return length_m;
-    }
-    const double below = low_m < 0.0 ? -low_m / rise_m : 0.0; // part of the way that lies below the base
-    const double start_m = std::fmax(low_m, 0.0);
-    const double x = falloff_per_m * (high_m - start_m);
-    const double mean = x == 0.0 ? 1.0 : -std::expm1(-x) / x;
-    return length_m * (below + (1.0 - below) * std::exp(-falloff_per_m * start_m) * mean);
-}
+[[nodiscard]] double height_integral(double falloff_per_m, double from_m, double to_m, double length_m);
 
-/// Optical depth of the homogeneous and the height fog between two points (world, metres). Density noise has no closed
-/// form: the medium's amplitude must be 0.
-[[nodiscard]] inline double closed_optical_depth(const Medium& medium, glm::dvec3 from, glm::dvec3 to) {
-    const glm::dvec3 way = to - from;
-    const double length_m = std::hypot(way.x, way.y, way.z);
-    const double base_m = medium.height.base_height_m;
-    return static_cast<double>(medium.homogeneous.extinction_per_m) * length_m +
-           static_cast<double>(medium.height.extinction_per_m) *
-               height_integral(medium.height.falloff_per_m, from.y - base_m, to.y - base_m, length_m);
-}
+/// What is there per metre.
+struct Coefficients {
+    glm::dvec3 scattering{0.0};
+    glm::dvec3 extinction{0.0};
+};
+
+/// The medium at one time.
+class Fog {
+public:
+    Fog(const Medium& medium, double time_s) : medium_(&medium), time_s_(time_s) {}
+
+    [[nodiscard]] const Medium& medium() const { return *medium_; }
+    [[nodiscard]] Coefficients at(const glm::dvec3& point) const;
+
+    /// Whether `closed_optical_depth` is the optical depth; else it is its mean over all noises.
+    [[nodiscard]] bool is_closed() const { return medium_->noise.amplitude == 0.0F; }
+
+    /// Optical depth without noise of the ray's first `length_m`; infinite where that is and the fog does not end.
+    [[nodiscard]] glm::dvec3 closed_optical_depth(const Ray& ray, double length_m) const;
+
+    /// From a point toward an endless light. Of media without end nothing counts: the illuminance is what arrives in
+    /// them. Those are the homogeneous fog, and the height fog unless it thins out on the way.
+    [[nodiscard]] glm::dvec3 closed_optical_depth_of_sky(const Ray& ray) const;
+    [[nodiscard]] Coefficients ending_at(const glm::dvec3& point) const; ///< without the media without end
+    [[nodiscard]] bool ends_toward(const glm::dvec3& direction) const;
+
+    /// Where the height fog has fallen to e^-45 of its base value, if the ray rises out of it; else infinity. Without
+    /// homogeneous fog nothing is left beyond.
+    [[nodiscard]] double top_of_height_fog(const Ray& ray) const;
+
+    /// Appends the distances within `part` between which the coefficients are smooth and change by no more than a few
+    /// orders of magnitude. Not sorted.
+    void add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks) const;
+
+private:
+    [[nodiscard]] double noise_factor(const glm::dvec3& point) const;
+    [[nodiscard]] double height_density(const glm::dvec3& point) const;
+
+    const Medium* medium_;
+    double time_s_;
+};
 
 } // namespace tyndall::volumetrics::reference

@@ -1,0 +1,135 @@
+#include "features/volumetrics/reference/medium.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "features/volumetrics/reference/noise.hpp"
+
+namespace tyndall::volumetrics::reference {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nothing_left = 45.0; ///< e^-45 = 3e-20
+constexpr std::size_t most_crossings = 100000;
+
+} // namespace
+
+double henyey_greenstein(double g, double cos_theta) {
+    // The sum of two terms that are never negative: no cancellation near g = 1.
+    const double denominator = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cos_theta);
+    return (1.0 - g * g) / (4.0 * std::numbers::pi * denominator * std::sqrt(denominator));
+}
+
+double phase(const Medium& medium, double cos_theta) {
+    return henyey_greenstein(static_cast<double>(medium.phase_g), cos_theta);
+}
+
+double height_integral(double falloff_per_m, double from_m, double to_m, double length_m) {
+    const double rise_m = std::abs(to_m - from_m);
+    const double low_m = std::fmin(from_m, to_m);
+    const double high_m = std::fmax(from_m, to_m);
+    if (high_m <= 0.0) {
+        return length_m;
+    }
+    const double below = low_m < 0.0 ? -low_m / rise_m : 0.0; // part of the way that lies below the base
+    const double start_m = std::fmax(low_m, 0.0);
+    const double x = falloff_per_m * (high_m - start_m);
+    const double mean = x == 0.0 ? 1.0 : -std::expm1(-x) / x;
+    return length_m * (below + (1.0 - below) * std::exp(-falloff_per_m * start_m) * mean);
+}
+
+double Fog::noise_factor(const glm::dvec3& point) const {
+    const DensityNoise& noise = medium_->noise;
+    if (noise.amplitude == 0.0F) {
+        return 1.0;
+    }
+    const glm::dvec3 cells = (point - glm::dvec3(noise.wind_m_s) * time_s_) / static_cast<double>(noise.scale_m);
+    return 1.0 + static_cast<double>(noise.amplitude) * gradient_noise(cells);
+}
+
+double Fog::height_density(const glm::dvec3& point) const {
+    const HeightFog& height = medium_->height;
+    const double above_m = std::fmax(0.0, point.y - static_cast<double>(height.base_height_m));
+    return static_cast<double>(height.extinction_per_m) *
+           std::exp(-static_cast<double>(height.falloff_per_m) * above_m);
+}
+
+Coefficients Fog::at(const glm::dvec3& point) const {
+    const double factor = noise_factor(point);
+    const double homogeneous = factor * static_cast<double>(medium_->homogeneous.extinction_per_m);
+    const double height = factor * height_density(point);
+    return {homogeneous * glm::dvec3(medium_->homogeneous.albedo) + height * glm::dvec3(medium_->height.albedo),
+            glm::dvec3(homogeneous + height)};
+}
+
+Coefficients Fog::ending_at(const glm::dvec3& point) const {
+    const double height = noise_factor(point) * height_density(point);
+    return {height * glm::dvec3(medium_->height.albedo), glm::dvec3(height)};
+}
+
+glm::dvec3 Fog::closed_optical_depth(const Ray& ray, double length_m) const {
+    const auto homogeneous = static_cast<double>(medium_->homogeneous.extinction_per_m);
+    const auto height = static_cast<double>(medium_->height.extinction_per_m);
+    const auto falloff = static_cast<double>(medium_->height.falloff_per_m);
+    double sum = homogeneous > 0.0 ? homogeneous * length_m : 0.0;
+    if (height > 0.0) {
+        const double from_m = ray.origin.y - static_cast<double>(medium_->height.base_height_m);
+        if (length_m < infinity) {
+            sum += height * height_integral(falloff, from_m, from_m + ray.direction.y * length_m, length_m);
+        } else if (ends_toward(ray.direction)) {
+            const double below_m = std::fmax(0.0, -from_m);
+            const double above = std::exp(-falloff * std::fmax(0.0, from_m)) / falloff;
+            sum += height * (below_m + above) / ray.direction.y;
+        } else {
+            sum = infinity;
+        }
+    }
+    return glm::dvec3(sum);
+}
+
+glm::dvec3 Fog::closed_optical_depth_of_sky(const Ray& ray) const {
+    if (!ends_toward(ray.direction)) {
+        return glm::dvec3(0.0);
+    }
+    Medium ending = *medium_;
+    ending.homogeneous.extinction_per_m = 0.0F;
+    return Fog(ending, time_s_).closed_optical_depth(ray, infinity);
+}
+
+bool Fog::ends_toward(const glm::dvec3& direction) const {
+    return direction.y > 0.0 && medium_->height.falloff_per_m > 0.0F;
+}
+
+double Fog::top_of_height_fog(const Ray& ray) const {
+    if (!ends_toward(ray.direction)) {
+        return infinity;
+    }
+    const double top_m = static_cast<double>(medium_->height.base_height_m) +
+                         nothing_left / static_cast<double>(medium_->height.falloff_per_m);
+    return std::fmax(0.0, (top_m - ray.origin.y) / ray.direction.y);
+}
+
+void Fog::add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks) const {
+    const auto add = [&](double distance_m) {
+        if (distance_m > part.begin && distance_m < part.end) {
+            breaks.push_back(distance_m);
+        }
+    };
+    if (medium_->height.extinction_per_m > 0.0F && ray.direction.y != 0.0) {
+        for (const double depths : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, nothing_left}) {
+            const double height_m = static_cast<double>(medium_->height.base_height_m) +
+                                    depths / static_cast<double>(medium_->height.falloff_per_m);
+            add((height_m - ray.origin.y) / ray.direction.y); // not a number without falloff: not added
+        }
+    }
+    const DensityNoise& noise = medium_->noise;
+    if (noise.amplitude > 0.0F) {
+        const auto scale_m = static_cast<double>(noise.scale_m);
+        add_lattice_crossings((ray.origin - glm::dvec3(noise.wind_m_s) * time_s_) / scale_m, ray.direction / scale_m,
+                              part, most_crossings, breaks);
+    }
+}
+
+} // namespace tyndall::volumetrics::reference

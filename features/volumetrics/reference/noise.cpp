@@ -1,0 +1,66 @@
+#include "features/volumetrics/reference/noise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace tyndall::volumetrics::reference {
+namespace {
+
+std::uint32_t modulo_period(double cell) {
+    return static_cast<std::uint32_t>(cell - 256.0 * std::floor(cell / 256.0));
+}
+
+glm::dvec3 gradient(const glm::dvec3& corner) {
+    std::uint32_t h = modulo_period(corner.x) * 0x8da6b343U ^ modulo_period(corner.y) * 0xd8163841U ^
+                      modulo_period(corner.z) * 0xcb1ab31fU;
+    h ^= h >> 15U;
+    h *= 0x2c1b3c6dU;
+    h ^= h >> 12U;
+    const glm::dvec3 bits(h & 1023U, h >> 10U & 1023U, h >> 20U & 1023U);
+    return (2.0 * bits - 1023.0) / 1024.0;
+}
+
+double fade(double a) {
+    return a * a * a * (10.0 + a * (6.0 * a - 15.0));
+}
+
+} // namespace
+
+double gradient_noise(const glm::dvec3& p) {
+    const glm::dvec3 cell = glm::floor(p);
+    const glm::dvec3 inside = p - cell;
+    const glm::dvec3 weight(fade(inside.x), fade(inside.y), fade(inside.z));
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 at(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+        const glm::dvec3 share = at * weight + (1.0 - at) * (1.0 - weight);
+        sum += share.x * share.y * share.z * glm::dot(gradient(cell + at), inside - at);
+    }
+    return std::clamp(1.25 * sum, -1.0, 1.0);
+}
+
+void add_lattice_crossings(const glm::dvec3& origin, const glm::dvec3& direction, Interval part, std::size_t most,
+                           std::vector<double>& breaks) {
+    const double planes =
+        (part.end - part.begin) * (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
+    if (!(planes <= static_cast<double>(most))) {
+        return;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0) {
+            continue;
+        }
+        const double from = origin[axis] + part.begin * direction[axis];
+        const double to = origin[axis] + part.end * direction[axis];
+        for (double plane = std::ceil(std::min(from, to)); plane < std::max(from, to); plane += 1.0) {
+            breaks.push_back((plane - origin[axis]) / direction[axis]);
+        }
+    }
+}
+
+} // namespace tyndall::volumetrics::reference

@@ -1,0 +1,121 @@
+// Adaptive integration with an error estimate.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include "features/volumetrics/reference/interval.hpp"
+
+namespace tyndall::volumetrics::reference {
+
+/// A value and a bound of its error, a channel each.
+struct Estimate {
+    glm::dvec3 value{0.0};
+    glm::dvec3 error{0.0};
+
+    Estimate& operator+=(const Estimate& other) {
+        value += other.value;
+        error += other.error;
+        return *this;
+    }
+};
+
+/// The error wanted is the larger of the two, judged by the largest channel.
+struct Tolerance {
+    double relative = 1e-6;
+    double absolute = 0.0;
+    std::size_t most_pieces = 20000; ///< into which one integral is cut before it returns what it has
+};
+
+[[nodiscard]] inline double largest(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+/// Gauss and Kronrod's rules of 7 and 15 nodes on one piece (Piessens et al., QUADPACK, 1983). The error is their
+/// difference, which is that of the weaker rule.
+template <class Integrand>
+[[nodiscard]] Estimate gauss_kronrod(const Integrand& integrand, double begin, double end) {
+    constexpr std::array nodes{0.991455371120812639, 0.949107912342758525, 0.864864423359769073, 0.741531185599394440,
+                               0.586087235467691130, 0.405845151377397167, 0.207784955007898468, 0.0};
+    constexpr std::array kronrod{0.022935322010529225, 0.063092092629978553, 0.104790010322250184,
+                                 0.140653259715525919, 0.169004726639267903, 0.190350578064785410,
+                                 0.204432940075298892, 0.209482141084727828};
+    constexpr std::array gauss{0.129484966168869693, 0.279705391489276668, 0.381830050505118945, 0.417959183673469388};
+    const double middle = 0.5 * (begin + end);
+    const double half = 0.5 * (end - begin);
+    glm::dvec3 fine = kronrod[7] * integrand(middle);
+    glm::dvec3 coarse = fine * (gauss[3] / kronrod[7]);
+    for (std::size_t i = 0; i < 7; ++i) {
+        const glm::dvec3 pair = integrand(middle - half * nodes[i]) + integrand(middle + half * nodes[i]);
+        fine += kronrod[i] * pair;
+        if (i % 2 == 1) {
+            coarse += gauss[i / 2] * pair;
+        }
+    }
+    return {half * fine, glm::abs(half * (fine - coarse))};
+}
+
+/// Sum of the integrals of `integrand`, double to glm::dvec3, over `parts`, in each of which it is smooth. The worst
+/// piece is halved until the sum of errors is within `tolerance`.
+template <class Integrand>
+[[nodiscard]] Estimate integrate(const Integrand& integrand, std::span<const Interval> parts,
+                                 const Tolerance& tolerance) {
+    struct Piece {
+        double begin;
+        double end;
+        Estimate estimate;
+        bool operator<(const Piece& other) const { return largest(estimate.error) < largest(other.estimate.error); }
+    };
+    std::vector<Piece> pieces;
+    Estimate sum;
+    for (const Interval& part : parts) {
+        pieces.push_back({part.begin, part.end, gauss_kronrod(integrand, part.begin, part.end)});
+        sum += pieces.back().estimate;
+    }
+    std::make_heap(pieces.begin(), pieces.end());
+    while (!pieces.empty() && pieces.size() < tolerance.most_pieces) {
+        const double wanted = std::max(tolerance.absolute, tolerance.relative * largest(glm::abs(sum.value)));
+        const Piece worst = pieces.front();
+        const double middle = 0.5 * (worst.begin + worst.end);
+        if (!(largest(sum.error) > wanted) || !(middle > worst.begin && middle < worst.end)) {
+            break;
+        }
+        std::pop_heap(pieces.begin(), pieces.end());
+        pieces.back() = {worst.begin, middle, gauss_kronrod(integrand, worst.begin, middle)};
+        sum.value += pieces.back().estimate.value - worst.estimate.value;
+        sum.error += pieces.back().estimate.error - worst.estimate.error;
+        std::push_heap(pieces.begin(), pieces.end());
+        pieces.push_back({middle, worst.end, gauss_kronrod(integrand, middle, worst.end)});
+        sum += pieces.back().estimate;
+        std::push_heap(pieces.begin(), pieces.end());
+    }
+    sum = {}; // anew: differences would leave the rounding of the largest error ever met
+    for (const Piece& piece : pieces) {
+        sum += piece.estimate;
+    }
+    return sum;
+}
+
+/// Appends `part`, cut at those of `breaks` that lie in it, each end mapped by `variable`, which ascends.
+template <class Variable>
+void append_cut(Interval part, std::vector<double> breaks, const Variable& variable, std::vector<Interval>& parts) {
+    std::erase_if(breaks, [&](double t) { return !(t > part.begin && t < part.end); });
+    breaks.push_back(part.end);
+    std::sort(breaks.begin(), breaks.end());
+    double begin = part.begin;
+    for (const double end : breaks) {
+        if (end > begin) {
+            parts.push_back({variable(begin), variable(end)});
+            begin = end;
+        }
+    }
+}
+
+} // namespace tyndall::volumetrics::reference

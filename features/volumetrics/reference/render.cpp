@@ -1,0 +1,321 @@
+#include "features/volumetrics/reference/render.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <random>
+#include <thread>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
+#include "features/volumetrics/reference/light.hpp"
+#include "features/volumetrics/reference/optical_depth.hpp"
+
+namespace tyndall::volumetrics::reference {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What an integral within the integral may be off, so that the outer one does not see it.
+Tolerance inner(const Tolerance& tolerance) {
+    return {0.1 * tolerance.relative, 0.0, tolerance.most_pieces};
+}
+
+/// One eye ray's way through the medium, and the integrals of what each source adds along it.
+class Airlight {
+public:
+    Airlight(const Scene& scene, const Ray& ray, double length_m, const Tolerance& tolerance)
+        : scene_(scene), ray_(ray), tolerance_(tolerance), fog_(scene.medium, scene.time_s),
+          path_(fog_, ray, length_m, tolerance) {}
+
+    [[nodiscard]] Estimate sum() {
+        if (!(path_.end() > 0.0)) {
+            return {};
+        }
+        add_ambient();
+        if (scene_.sun) {
+            add_sun(*scene_.sun);
+        }
+        for (const Light& light : scene_.lights) {
+            add_light(light);
+        }
+        // Errors of the integrals inside scale the whole.
+        sum_.error += sum_.value * (path_.error() + 2.0 * inner_error_);
+        return sum_;
+    }
+
+private:
+    /// Radiance gained per metre and per unit of in-scattered radiance, as the eye sees it.
+    [[nodiscard]] glm::dvec3 seen(double distance_m) const {
+        return fog_.at(point_at(ray_, distance_m)).scattering * glm::exp(-path_.optical_depth(distance_m));
+    }
+
+    /// Errors as small as those of what has been summed already are small enough.
+    [[nodiscard]] Tolerance tolerance() const {
+        return {tolerance_.relative,
+                tolerance_.relative * largest(sum_.value) / static_cast<double>(1 + scene_.lights.size()),
+                tolerance_.most_pieces};
+    }
+
+    [[nodiscard]] glm::dvec3 transmittance_of(const Estimate& depth) {
+        inner_error_ = std::max(inner_error_, largest(depth.error));
+        return glm::exp(-depth.value);
+    }
+
+    void add_ambient() {
+        const glm::dvec3 ambient(scene_.medium.ambient_radiance);
+        if (largest(ambient) > 0.0) {
+            const auto integrand = [&](double t) { return ambient * seen(t); };
+            add({Interval{0.0, path_.end()}}, {}, std::identity(), integrand);
+        }
+    }
+
+    void add_sun(const DirectionalLight& sun) {
+        const glm::dvec3 to_sun = -sun.direction;
+        const glm::dvec3 scattered =
+            sun.illuminance_lux * phase(scene_.medium, glm::dot(sun.direction, -ray_.direction));
+        const auto integrand = [&](double t) {
+            glm::dvec3 light = scattered * seen(t);
+            if (scene_.attenuates_light) {
+                light *= transmittance_of(optical_depth_of_sky(fog_, {point_at(ray_, t), to_sun}, inner(tolerance_)));
+            }
+            return light;
+        };
+        const Interval whole{0.0, path_.end()};
+        const std::vector<Interval> lit =
+            sun.casts_shadows ? scene_.geometry.lit_from_direction(ray_, whole, to_sun) : std::vector{whole};
+        add(lit, {}, std::identity(), integrand);
+    }
+
+    /// In the angle under which the light sees the ray (Kulla and Fajardo 2012, "equi-angular"): with t = h tan(phi),
+    /// dt / d^2 is dphi / h, and nothing is left of the pole.
+    void add_light(const Light& light) {
+        const std::optional<Interval> reach = within_range(light, ray_, {0.0, path_.end()});
+        if (!reach) {
+            return;
+        }
+        const double foot = glm::dot(light.position - ray_.origin, ray_.direction);
+        const double height =
+            std::max(glm::length(light.position - point_at(ray_, foot)), std::max(light.radius_m, 1e-3));
+        const auto integrand = [&](double phi) {
+            const double offset = height * std::tan(phi);
+            const glm::dvec3 point = point_at(ray_, foot + offset);
+            const glm::dvec3 way = point - light.position;
+            const double distance_m = glm::length(way);
+            const double cosine = distance_m > 0.0 ? -glm::dot(way, ray_.direction) / distance_m : 0.0;
+            glm::dvec3 lit = irradiance(light, point) * seen(foot + offset) * phase(scene_.medium, cosine);
+            if (scene_.attenuates_light && distance_m > 0.0) {
+                lit *= transmittance_of(
+                    optical_depth(fog_, {light.position, way / distance_m}, distance_m, inner(tolerance_)));
+            }
+            return lit * (height + offset * (offset / height));
+        };
+        std::vector<double> breaks{foot};
+        add_light_breaks(light, ray_, breaks);
+        const std::vector<Interval> lit =
+            light.casts_shadows ? scene_.geometry.lit_from_point(ray_, *reach, light.position) : std::vector{*reach};
+        add(
+            lit, std::move(breaks), [&](double t) { return std::atan2(t - foot, height); }, integrand);
+    }
+
+    /// Integral over all of `lit` at once, so that parts with little in them are not refined in vain. The integrand is
+    /// a function of `variable` of the distance, smooth between `breaks` and the path's own.
+    template <class Variable, class Integrand>
+    void add(const std::vector<Interval>& lit, std::vector<double> breaks, const Variable& variable,
+             const Integrand& integrand) {
+        breaks.insert(breaks.end(), path_.breaks().begin(), path_.breaks().end());
+        std::vector<Interval> parts;
+        for (const Interval& part : lit) {
+            append_cut(part, breaks, variable, parts);
+        }
+        sum_ += integrate(integrand, parts, tolerance());
+    }
+
+    const Scene& scene_;
+    const Ray& ray_;
+    const Tolerance& tolerance_;
+    Fog fog_;
+    EyePath path_;
+    Estimate sum_;
+    double inner_error_ = 0.0; ///< the largest of any optical depth along the lights' ways
+};
+
+/// Where rays from a surface start: off it, as single precision needs.
+glm::dvec3 lifted(const SurfacePoint& point) {
+    const glm::dvec3 p = glm::abs(point.position);
+    return point.position + point.normal * (2e-6 * std::max(1.0, largest(p)));
+}
+
+/// Irradiance of the surface from direction `to_light` where `normal_irradiance` arrives in empty space.
+Estimate received(const SurfacePoint& point, const glm::dvec3& to_light, const glm::dvec3& normal_irradiance,
+                  const Estimate& depth) {
+    const glm::dvec3 arrives = normal_irradiance * glm::dot(point.normal, to_light) * glm::exp(-depth.value);
+    return {arrives, arrives * depth.error};
+}
+
+bool faces(const SurfacePoint& point, const glm::dvec3& to_light) {
+    return glm::dot(point.normal, to_light) > 0.0;
+}
+
+Estimate from_sun(const Scene& scene, const Fog& fog, const DirectionalLight& sun, const SurfacePoint& point,
+                  const Tolerance& tolerance) {
+    const Ray ray{lifted(point), -sun.direction};
+    if (!faces(point, ray.direction) || (sun.casts_shadows && scene.geometry.is_blocked(ray, infinity))) {
+        return {};
+    }
+    const Estimate depth = scene.attenuates_light
+                               ? optical_depth_of_sky(fog, {point.position, ray.direction}, inner(tolerance))
+                               : Estimate{};
+    return received(point, ray.direction, sun.illuminance_lux, depth);
+}
+
+Estimate from_light(const Scene& scene, const Fog& fog, const Light& light, const SurfacePoint& point,
+                    const Tolerance& tolerance) {
+    const glm::dvec3 way = light.position - point.position;
+    const double distance_m = glm::length(way);
+    const glm::dvec3 arrives = irradiance(light, point.position);
+    if (!(distance_m > 0.0) || !(largest(arrives) > 0.0) || !faces(point, way)) {
+        return {};
+    }
+    const glm::dvec3 to_light = way / distance_m;
+    const glm::dvec3 start = lifted(point);
+    const double rest_m = glm::length(light.position - start);
+    if (light.casts_shadows &&
+        scene.geometry.is_blocked({start, (light.position - start) / rest_m}, rest_m * (1.0 - 1e-6))) {
+        return {};
+    }
+    const Estimate depth = scene.attenuates_light
+                               ? optical_depth(fog, {point.position, to_light}, distance_m, inner(tolerance))
+                               : Estimate{};
+    return received(point, to_light, arrives, depth);
+}
+
+} // namespace
+
+Estimate airlight(const Scene& scene, const Ray& ray, double length_m, const Tolerance& tolerance) {
+    return Airlight(scene, ray, length_m, tolerance).sum();
+}
+
+Estimate transmittance(const Scene& scene, const Ray& ray, double length_m, const Tolerance& tolerance) {
+    const Fog fog(scene.medium, scene.time_s);
+    if (fog.is_closed()) {
+        return {glm::exp(-fog.closed_optical_depth(ray, length_m)), glm::dvec3(0.0)};
+    }
+    const EyePath path(fog, ray, length_m, tolerance);
+    const glm::dvec3 passed = glm::exp(-path.optical_depth(path.end()));
+    return {passed, passed * path.error()};
+}
+
+Estimate surface_radiance(const Scene& scene, const SurfacePoint& point, const Tolerance& tolerance) {
+    const Fog fog(scene.medium, scene.time_s);
+    const Surroundings& around = scene.surroundings;
+    const glm::dvec3 ambient = glm::mix(around.ambient_down, around.ambient_up, 0.5 + 0.5 * point.normal.y);
+    Estimate irradiance{std::numbers::pi * ambient, glm::dvec3(0.0)};
+    if (scene.sun) {
+        irradiance += from_sun(scene, fog, *scene.sun, point, tolerance);
+    }
+    for (const DirectionalLight& fill : scene.fills) {
+        if (faces(point, -fill.direction)) {
+            irradiance += received(point, -fill.direction, fill.illuminance_lux, {});
+        }
+    }
+    for (const Light& light : scene.lights) {
+        irradiance += from_light(scene, fog, light, point, tolerance);
+    }
+    const glm::dvec3 reflected = point.albedo / std::numbers::pi;
+    return {point.emission + reflected * irradiance.value, reflected * irradiance.error};
+}
+
+glm::dvec3 background_radiance(const Surroundings& surroundings, const glm::dvec3& direction) {
+    const double height = std::clamp(direction.y, 0.0, 1.0);
+    const glm::dvec3 sky = glm::mix(surroundings.horizon, surroundings.zenith, 1.0 - std::pow(1.0 - height, 3.0));
+    return glm::mix(sky, surroundings.ground, std::clamp(-8.0 * direction.y, 0.0, 1.0));
+}
+
+Estimate radiance(const Scene& scene, const Ray& ray, const Tolerance& tolerance) {
+    const std::optional<Hit> hit = scene.geometry.hit(ray);
+    const double length_m = hit ? hit->distance_m : infinity;
+    Estimate behind{background_radiance(scene.surroundings, ray.direction), glm::dvec3(0.0)};
+    if (hit) {
+        const Triangle& triangle = scene.geometry.triangles()[hit->triangle];
+        behind = surface_radiance(scene, {point_at(ray, length_m), hit->normal, triangle.albedo, triangle.emission},
+                                  tolerance);
+    }
+    const Estimate passed = transmittance(scene, ray, length_m, tolerance);
+    Estimate sum = airlight(scene, ray, length_m, tolerance);
+    sum.value += passed.value * behind.value;
+    sum.error += passed.value * behind.error + passed.error * behind.value;
+    return sum;
+}
+
+Ray pixel_ray(const Camera& camera, ImageSize size, Pixel pixel) {
+    const double aspect = static_cast<double>(size.width) / size.height;
+    const double x = ((pixel.x + 0.5) / size.width * 2.0 - 1.0) * aspect;
+    const double y = 1.0 - (pixel.y + 0.5) / size.height * 2.0;
+    const glm::dmat4& m = camera.world_from_camera;
+    if (camera.orthographic_half_height_m) {
+        const double half_m = *camera.orthographic_half_height_m;
+        return {glm::dvec3(m * glm::dvec4(x * half_m, y * half_m, 0.0, 1.0)), -glm::normalize(glm::dvec3(m[2]))};
+    }
+    const double slope = std::tan(0.5 * camera.fov_y_rad);
+    return {glm::dvec3(m[3]), glm::normalize(glm::dvec3(m * glm::dvec4(x * slope, y * slope, -1.0, 0.0)))};
+}
+
+std::vector<Pixel> all_pixels(ImageSize size) {
+    std::vector<Pixel> pixels;
+    pixels.reserve(std::size_t{size.width} * size.height);
+    for (std::uint32_t y = 0; y < size.height; ++y) {
+        for (std::uint32_t x = 0; x < size.width; ++x) {
+            pixels.push_back({x, y});
+        }
+    }
+    return pixels;
+}
+
+std::vector<Pixel> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed) {
+    const std::vector<Pixel> all = all_pixels(size);
+    std::vector<Pixel> chosen;
+    std::mt19937_64 random(seed);
+    // Knuth's algorithm S: each of what is left is taken with the probability that still fills the choice.
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (random() % (all.size() - i) < std::min(count, all.size()) - chosen.size()) {
+            chosen.push_back(all[i]);
+        }
+    }
+    return chosen;
+}
+
+std::vector<Estimate> render(const Scene& scene, const Camera& camera, ImageSize size, std::span<const Pixel> pixels,
+                             const Tolerance& tolerance, const std::function<void(std::size_t)>& progress) {
+    std::vector<Estimate> image(pixels.size());
+    std::atomic<std::size_t> next = 0;
+    std::mutex reporting;
+    std::size_t done = 0;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < pixels.size(); i = next++) {
+            image[i] = radiance(scene, pixel_ray(camera, size, pixels[i]), tolerance);
+            if (progress) {
+                const std::lock_guard lock(reporting);
+                progress(++done);
+            }
+        }
+    };
+    std::vector<std::thread> workers;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) {
+        workers.emplace_back(work);
+    }
+    work();
+    for (std::thread& worker : workers) {
+        worker.join();
+    }
+    return image;
+}
+
+} // namespace tyndall::volumetrics::reference
