@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -13,7 +12,6 @@
 namespace tyndall::volumetrics::reference {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nothing_left = 45.0;
 
 double smallest(const glm::dvec3& v) {

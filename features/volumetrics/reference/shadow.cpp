@@ -191,8 +191,9 @@ std::vector<Interval> ShadowTree::lit_from_direction(const Ray& ray, Interval pa
         const std::optional<Segment> line = cut(plane, triangle);
         const std::optional<Segment> blocker = line ? clip(*line, 0.0, infinity) : std::nullopt;
         if (blocker) {
-            const auto [begin, end] = std::minmax(blocker->first.along, blocker->second.along);
-            shadows.push_back({begin, end});
+            const double first = blocker->first.along;
+            const double second = blocker->second.along;
+            shadows.push_back({std::min(first, second), std::max(first, second)});
         }
     });
     return without(part, std::move(shadows));
@@ -220,8 +221,9 @@ std::vector<Interval> ShadowTree::lit_from_point(const Ray& ray, Interval part, 
         const std::optional<Segment> line = cut(plane, triangle);
         const std::optional<Segment> blocker = line ? clip(*line, 0.0, height) : std::nullopt;
         if (blocker) {
-            const auto [begin, end] = std::minmax(thrown(blocker->first), thrown(blocker->second));
-            shadows.push_back({begin, end});
+            const double first = thrown(blocker->first);
+            const double second = thrown(blocker->second);
+            shadows.push_back({std::min(first, second), std::max(first, second)});
         }
     });
     return without(part, std::move(shadows));
