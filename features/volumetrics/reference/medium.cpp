@@ -124,11 +124,14 @@ void Fog::add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks)
             add((height_m - ray.origin.y) / ray.direction.y); // not a number without falloff: not added
         }
     }
+}
+
+void Fog::add_seams(const Ray& ray, Interval part, std::vector<double>& seams) const {
     const DensityNoise& noise = medium_->noise;
     if (noise.amplitude > 0.0F) {
         const auto scale_m = static_cast<double>(noise.scale_m);
         add_lattice_crossings((ray.origin - glm::dvec3(noise.wind_m_s) * time_s_) / scale_m, ray.direction / scale_m,
-                              part, most_crossings, breaks);
+                              part, most_crossings, seams);
     }
 }
 

@@ -50,9 +50,11 @@ public:
     /// homogeneous fog nothing is left beyond.
     [[nodiscard]] double top_of_height_fog(const Ray& ray) const;
 
-    /// Appends the distances within `part` between which the coefficients are smooth and change by no more than a few
+    /// Appends the distances within `part` between which the mean density is smooth and changes by no more than a few
     /// orders of magnitude. Not sorted.
     void add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks) const;
+    /// And those at which the noise's third derivative jumps.
+    void add_seams(const Ray& ray, Interval part, std::vector<double>& seams) const;
 
 private:
     [[nodiscard]] double noise_factor(const glm::dvec3& point) const;

@@ -21,6 +21,6 @@ namespace tyndall::volumetrics::reference {
 /// Appends where the ray, its origin and direction in cells, crosses a plane of the lattice within `part`: between two
 /// such places the noise is a polynomial. Nothing is added if there are more than `most` of them.
 void add_lattice_crossings(const glm::dvec3& origin, const glm::dvec3& direction, Interval part, std::size_t most,
-                           std::vector<double>& breaks);
+                           std::vector<double>& seams);
 
 } // namespace tyndall::volumetrics::reference

@@ -40,13 +40,15 @@ double distance_at_depth(const Fog& fog, const Ray& ray, double depth, double li
 }
 
 template <class Extinction>
-Estimate summed(const Fog& fog, const Ray& ray, double length_m, const Tolerance& tolerance,
-                const Extinction& extinction) {
+Estimate summed(const Fog& fog, const Ray& ray, double length_m, double wanted, const Extinction& extinction) {
     std::vector<double> breaks;
+    std::vector<double> seams;
     fog.add_breaks(ray, {0.0, length_m}, breaks);
+    fog.add_seams(ray, {0.0, length_m}, seams);
+    std::sort(seams.begin(), seams.end());
     std::vector<Interval> parts;
     append_cut({0.0, length_m}, std::move(breaks), std::identity(), parts);
-    return integrate(extinction, parts, {0.0, tolerance.relative, tolerance.most_pieces});
+    return integrate(extinction, parts, {0.0, wanted}, seams);
 }
 
 /// Gauss and Legendre's nodes and weights on [-1, 1], by Newton's iteration, and the polynomials' values there.
@@ -87,47 +89,60 @@ struct GaussLegendre {
 
 } // namespace
 
-Estimate optical_depth(const Fog& fog, const Ray& ray, double length_m, const Tolerance& tolerance) {
+Estimate optical_depth(const Fog& fog, const Ray& ray, double length_m, double wanted) {
     if (fog.is_closed()) {
         return {fog.closed_optical_depth(ray, length_m), glm::dvec3(0.0)};
     }
-    return summed(fog, ray, length_m, tolerance, [&](double t) { return fog.at(point_at(ray, t)).extinction; });
+    return summed(fog, ray, length_m, wanted, [&](double t) { return fog.at(point_at(ray, t)).extinction; });
 }
 
-Estimate optical_depth_of_sky(const Fog& fog, const Ray& ray, const Tolerance& tolerance) {
+Estimate optical_depth_of_sky(const Fog& fog, const Ray& ray, double wanted) {
     if (fog.is_closed() || !fog.ends_toward(ray.direction)) {
         return {fog.closed_optical_depth_of_sky(ray), glm::dvec3(0.0)};
     }
-    return summed(fog, ray, fog.top_of_height_fog(ray), tolerance,
+    return summed(fog, ray, fog.top_of_height_fog(ray), wanted,
                   [&](double t) { return fog.ending_at(point_at(ray, t)).extinction; });
 }
 
-EyePath::EyePath(const Fog& fog, const Ray& ray, double length_m, const Tolerance& tolerance) : fog_(fog), ray_(ray) {
-    // With noise twice the depth: density may stay below its mean for a while.
-    const double depth = fog.is_closed() ? nothing_left : 2.0 * nothing_left;
-    end_m_ = length_m;
+EyePath::EyePath(const Fog& fog, const Ray& ray, double length_m, double wanted) : fog_(fog), ray_(ray) {
+    double limit_m = length_m;
     if (fog.medium().homogeneous.extinction_per_m == 0.0F) {
-        end_m_ = fog.medium().height.extinction_per_m == 0.0F ? 0.0 : std::min(end_m_, fog.top_of_height_fog(ray));
+        limit_m = fog.medium().height.extinction_per_m == 0.0F ? 0.0 : std::min(limit_m, fog.top_of_height_fog(ray));
     }
-    if (end_m_ > 0.0) {
-        end_m_ = distance_at_depth(fog, ray, depth, end_m_);
-    }
-    breaks_ = {0.0, end_m_};
-    for (double level = 0.5; level < depth; level *= 2.0) {
-        const double distance_m = distance_at_depth(fog, ray, level, end_m_);
-        if (distance_m >= end_m_) {
+    // Noise may keep the density below its mean for a while: then farther.
+    double begin_m = 0.0;
+    for (double depth = nothing_left; limit_m > begin_m && depth < 1e6; depth *= 2.0) {
+        end_m_ = distance_at_depth(fog, ray, depth, limit_m);
+        if (fog.is_closed()) {
             break;
         }
-        breaks_.push_back(distance_m);
+        follow(begin_m, end_m_, wanted);
+        if (smallest(optical_depth(end_m_)) >= nothing_left) {
+            break;
+        }
+        begin_m = end_m_;
+    }
+    for (double level = 0.5; level < nothing_left; level *= 2.0) {
+        const double distance_m = distance_at_depth(fog, ray, level, end_m_);
+        if (distance_m < end_m_) {
+            breaks_.push_back(distance_m);
+        }
     }
     fog.add_breaks(ray, {0.0, end_m_}, breaks_);
     std::sort(breaks_.begin(), breaks_.end());
-    breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
-    if (!fog.is_closed()) {
-        const double wanted = 0.1 * tolerance.relative / static_cast<double>(breaks_.size());
-        for (std::size_t i = 1; i < breaks_.size(); ++i) {
-            expand(breaks_[i - 1], breaks_[i], wanted, 20);
-        }
+}
+
+void EyePath::follow(double begin, double end, double wanted) {
+    std::vector<double> cuts;
+    fog_.add_breaks(ray_, {begin, end}, cuts);
+    const std::size_t known = seams_.size();
+    fog_.add_seams(ray_, {begin, end}, seams_);
+    std::sort(seams_.begin() + static_cast<std::ptrdiff_t>(known), seams_.end());
+    cuts.insert(cuts.end(), seams_.begin() + static_cast<std::ptrdiff_t>(known), seams_.end());
+    std::vector<Interval> parts;
+    append_cut({begin, end}, std::move(cuts), std::identity(), parts);
+    for (const Interval& part : parts) {
+        expand(part.begin, part.end, wanted / static_cast<double>(parts.size()), 20);
     }
 }
 

@@ -65,11 +65,18 @@ template <class Integrand>
     return {half * fine, 2.0 * glm::abs(half * (fine - coarse))};
 }
 
-/// Sum of the integrals of `integrand`, double to glm::dvec3, over `parts`, in each of which it is smooth. The worst
-/// piece is halved until the sum of errors is within `tolerance`.
+/// Where to halve a piece: at the middle one of the seams in it, else in its middle. `seams` ascend.
+[[nodiscard]] inline double place_to_halve(double begin, double end, std::span<const double> seams) {
+    const auto first = std::upper_bound(seams.begin(), seams.end(), begin);
+    const auto last = std::lower_bound(first, seams.end(), end);
+    return first < last ? first[(last - first) / 2] : 0.5 * (begin + end);
+}
+
+/// Sum of the integrals of `integrand`, double to glm::dvec3, over `parts`, in each of which it is smooth but for a
+/// jump of some derivative at `seams`. The worst piece is halved until the sum of errors is within `tolerance`.
 template <class Integrand>
 [[nodiscard]] Estimate integrate(const Integrand& integrand, std::span<const Interval> parts,
-                                 const Tolerance& tolerance) {
+                                 const Tolerance& tolerance, std::span<const double> seams = {}) {
     struct Piece {
         double begin;
         double end;
@@ -86,7 +93,7 @@ template <class Integrand>
     while (!pieces.empty() && pieces.size() < tolerance.most_pieces) {
         const double wanted = std::max(tolerance.absolute, tolerance.relative * largest(glm::abs(sum.value)));
         const Piece worst = pieces.front();
-        const double middle = 0.5 * (worst.begin + worst.end);
+        const double middle = place_to_halve(worst.begin, worst.end, seams);
         if (!(largest(sum.error) > wanted) || !(middle > worst.begin && middle < worst.end)) {
             break;
         }

@@ -23,9 +23,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What an integral within the integral may be off, so that the outer one does not see it.
-Tolerance inner(const Tolerance& tolerance) {
-    return {0.1 * tolerance.relative, 0.0, tolerance.most_pieces};
+/// What an optical depth may be off, for the integral around it not to see it.
+double inner(const Tolerance& tolerance) {
+    return 0.1 * tolerance.relative;
 }
 
 /// One eye ray's way through the medium, and the integrals of what each source adds along it.
@@ -33,12 +33,27 @@ class Airlight {
 public:
     Airlight(const Scene& scene, const Ray& ray, double length_m, const Tolerance& tolerance)
         : scene_(scene), ray_(ray), tolerance_(tolerance), fog_(scene.medium, scene.time_s),
-          path_(fog_, ray, length_m, tolerance) {}
+          path_(fog_, ray, length_m, inner(tolerance)) {}
 
     [[nodiscard]] Estimate sum() {
         if (!(path_.end() > 0.0)) {
             return {};
         }
+        if (has_inner_integrals()) {
+            // A rough sum first tells which of them are worth the effort.
+            const Tolerance wanted = std::exchange(tolerance_, {std::max(tolerance_.relative, 1e-2), 0.0});
+            add_sources();
+            scale_ = largest(sum_.value) / static_cast<double>(1 + scene_.lights.size());
+            tolerance_ = wanted;
+            sum_ = {};
+        }
+        add_sources();
+        sum_.error += sum_.value * path_.error();
+        return sum_;
+    }
+
+private:
+    void add_sources() {
         add_ambient();
         if (scene_.sun) {
             add_sun(*scene_.sun);
@@ -46,12 +61,11 @@ public:
         for (const Light& light : scene_.lights) {
             add_light(light);
         }
-        // Errors of the integrals inside scale the whole.
-        sum_.error += sum_.value * (path_.error() + 2.0 * inner_error_);
-        return sum_;
     }
 
-private:
+    /// Whether each node asks for an integral along the light's way.
+    [[nodiscard]] bool has_inner_integrals() const { return !fog_.is_closed() && scene_.attenuates_light; }
+
     /// Radiance gained per metre and per unit of in-scattered radiance, as the eye sees it.
     [[nodiscard]] glm::dvec3 seen(double distance_m) const {
         return fog_.at(point_at(ray_, distance_m)).scattering * glm::exp(-path_.optical_depth(distance_m));
@@ -59,21 +73,33 @@ private:
 
     /// Errors as small as those of what has been summed already are small enough.
     [[nodiscard]] Tolerance tolerance() const {
-        return {tolerance_.relative,
-                tolerance_.relative * largest(sum_.value) / static_cast<double>(1 + scene_.lights.size()),
+        const double others = std::max(scale_, largest(sum_.value) / static_cast<double>(1 + scene_.lights.size()));
+        return {tolerance_.relative, std::max(tolerance_.absolute, tolerance_.relative * others),
                 tolerance_.most_pieces};
     }
 
-    [[nodiscard]] glm::dvec3 transmittance_of(const Estimate& depth) {
-        inner_error_ = std::max(inner_error_, largest(depth.error));
-        return glm::exp(-depth.value);
+    /// The error wanted of a node's optical depth toward the light: what weighs little may be off more. The integrand
+    /// would be `unweakened` without it, over a span of `span`. In all the integral is then off by no more than `inner`
+    /// of itself and of the scale.
+    [[nodiscard]] double wanted(const glm::dvec3& unweakened, double span) const {
+        const double weight = largest(unweakened) * span;
+        return std::min(0.5, inner(tolerance_) * std::max(1.0, weight > 0.0 ? scale_ / weight : 1.0));
+    }
+
+    /// Adds an integral with a light's way in it.
+    void add_weakened(Estimate estimate) {
+        if (has_inner_integrals()) {
+            // e^0.5 bounds what the curvature of the exponential adds.
+            estimate.error += 1.7 * inner(tolerance_) * (estimate.value + scale_);
+        }
+        sum_ += estimate;
     }
 
     void add_ambient() {
         const glm::dvec3 ambient(scene_.medium.ambient_radiance);
         if (largest(ambient) > 0.0) {
             const auto integrand = [&](double t) { return ambient * seen(t); };
-            add({Interval{0.0, path_.end()}}, {}, std::identity(), integrand);
+            sum_ += integral({Interval{0.0, path_.end()}}, {}, std::identity(), integrand);
         }
     }
 
@@ -84,14 +110,15 @@ private:
         const auto integrand = [&](double t) {
             glm::dvec3 light = scattered * seen(t);
             if (scene_.attenuates_light) {
-                light *= transmittance_of(optical_depth_of_sky(fog_, {point_at(ray_, t), to_sun}, inner(tolerance_)));
+                const Ray way{point_at(ray_, t), to_sun};
+                light *= glm::exp(-optical_depth_of_sky(fog_, way, wanted(light, path_.end())).value);
             }
             return light;
         };
         const Interval whole{0.0, path_.end()};
         const std::vector<Interval> lit =
             sun.casts_shadows ? scene_.geometry.lit_from_direction(ray_, whole, to_sun) : std::vector{whole};
-        add(lit, {}, std::identity(), integrand);
+        add_weakened(integral(lit, {}, std::identity(), integrand));
     }
 
     /// In the angle under which the light sees the ray (Kulla and Fajardo 2012, "equi-angular"): with t = h tan(phi),
@@ -104,47 +131,52 @@ private:
         const double foot = glm::dot(light.position - ray_.origin, ray_.direction);
         const double height =
             std::max(glm::length(light.position - point_at(ray_, foot)), std::max(light.radius_m, 1e-3));
+        const auto angle = [&](double t) { return std::atan2(t - foot, height); };
+        const double span = angle(reach->end) - angle(reach->begin);
         const auto integrand = [&](double phi) {
             const double offset = height * std::tan(phi);
             const glm::dvec3 point = point_at(ray_, foot + offset);
             const glm::dvec3 way = point - light.position;
             const double distance_m = glm::length(way);
+            const double jacobian = height + offset * (offset / height);
             const double cosine = distance_m > 0.0 ? -glm::dot(way, ray_.direction) / distance_m : 0.0;
             glm::dvec3 lit = irradiance(light, point) * seen(foot + offset) * phase(scene_.medium, cosine);
-            if (scene_.attenuates_light && distance_m > 0.0) {
-                lit *= transmittance_of(
-                    optical_depth(fog_, {light.position, way / distance_m}, distance_m, inner(tolerance_)));
+            if (scene_.attenuates_light && distance_m > 0.0 && largest(lit) > 0.0) {
+                const Ray from_light{light.position, way / distance_m};
+                const double wanted_depth = wanted(lit * jacobian, span);
+                lit *= glm::exp(-optical_depth(fog_, from_light, distance_m, wanted_depth).value);
             }
-            return lit * (height + offset * (offset / height));
+            return lit * jacobian;
         };
         std::vector<double> breaks{foot};
         add_light_breaks(light, ray_, breaks);
         const std::vector<Interval> lit =
             light.casts_shadows ? scene_.geometry.lit_from_point(ray_, *reach, light.position) : std::vector{*reach};
-        add(
-            lit, std::move(breaks), [&](double t) { return std::atan2(t - foot, height); }, integrand);
+        add_weakened(integral(lit, std::move(breaks), angle, integrand));
     }
 
     /// Integral over all of `lit` at once, so that parts with little in them are not refined in vain. The integrand is
     /// a function of `variable` of the distance, smooth between `breaks` and the path's own.
     template <class Variable, class Integrand>
-    void add(const std::vector<Interval>& lit, std::vector<double> breaks, const Variable& variable,
-             const Integrand& integrand) {
+    [[nodiscard]] Estimate integral(const std::vector<Interval>& lit, std::vector<double> breaks,
+                                    const Variable& variable, const Integrand& integrand) const {
         breaks.insert(breaks.end(), path_.breaks().begin(), path_.breaks().end());
         std::vector<Interval> parts;
         for (const Interval& part : lit) {
             append_cut(part, breaks, variable, parts);
         }
-        sum_ += integrate(integrand, parts, tolerance());
+        std::vector<double> seams = path_.seams();
+        std::transform(seams.begin(), seams.end(), seams.begin(), variable);
+        return integrate(integrand, parts, tolerance(), seams);
     }
 
     const Scene& scene_;
     const Ray& ray_;
-    const Tolerance& tolerance_;
+    Tolerance tolerance_;
     Fog fog_;
     EyePath path_;
     Estimate sum_;
-    double inner_error_ = 0.0; ///< the largest of any optical depth along the lights' ways
+    double scale_ = 0.0; ///< roughly, a source's share of the sum; 0 where it is not needed
 };
 
 /// Where rays from a surface start: off it, as single precision needs.
@@ -208,7 +240,7 @@ Estimate transmittance(const Scene& scene, const Ray& ray, double length_m, cons
     if (fog.is_closed()) {
         return {glm::exp(-fog.closed_optical_depth(ray, length_m)), glm::dvec3(0.0)};
     }
-    const EyePath path(fog, ray, length_m, tolerance);
+    const EyePath path(fog, ray, length_m, inner(tolerance));
     const glm::dvec3 passed = glm::exp(-path.optical_depth(path.end()));
     return {passed, passed * path.error()};
 }
