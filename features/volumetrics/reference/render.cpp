@@ -71,11 +71,11 @@ private:
         return fog_.at(point_at(ray_, distance_m)).scattering * glm::exp(-path_.optical_depth(distance_m));
     }
 
-    /// Errors as small as those of what has been summed already are small enough.
+    /// Half of the error that the whole may have; of a dim source, as much as of the others.
     [[nodiscard]] Tolerance tolerance() const {
+        const double relative = 0.5 * tolerance_.relative;
         const double others = std::max(scale_, largest(sum_.value) / static_cast<double>(1 + scene_.lights.size()));
-        return {tolerance_.relative, std::max(tolerance_.absolute, tolerance_.relative * others),
-                tolerance_.most_pieces};
+        return {relative, std::max(tolerance_.absolute, relative * others), tolerance_.most_pieces};
     }
 
     /// The error wanted of a node's optical depth toward the light: what weighs little may be off more. The integrand
