@@ -35,7 +35,7 @@ Work collect_work(const Flow& flow, const Order& order, const Kept& kept, const 
         work.first_in[i + 1] += work.first_in[i];
     }
     work.in.resize(work.first_in.back());
-    std::vector<std::uint32_t> fill(work.first_in.begin(), work.first_in.end() - 1);
+    Scratch<std::uint32_t> fill(work.first_in.begin(), work.first_in.end() - 1);
     for (const Edge& edge : flow.edges) {
         const std::uint32_t from = work.item_of[edge.from];
         const std::uint32_t to = work.item_of[edge.to];
@@ -63,7 +63,7 @@ ItemSchedule merged(const Work& work, const ItemSchedule& schedule) {
         std::uint32_t end = 0;
         std::uint32_t edge = 0; ///< into Work::in: those before it come from items that are placed
     };
-    std::vector<Head> heads(work.queue_count);
+    Scratch<Head> heads(work.queue_count);
     for (const std::uint32_t queue : schedule.queue) {
         ++heads[queue].end;
     }
@@ -71,7 +71,7 @@ ItemSchedule merged(const Work& work, const ItemSchedule& schedule) {
         heads[q].next = heads[q - 1].end;
         heads[q].end += heads[q].next;
     }
-    std::vector<std::uint32_t> by_queue(count);
+    Scratch<std::uint32_t> by_queue(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         by_queue[heads[schedule.queue[i]].next++] = schedule.items[i];
     }
@@ -79,7 +79,7 @@ ItemSchedule merged(const Work& work, const ItemSchedule& schedule) {
         heads[q].next = q == 0 ? 0 : heads[q - 1].end;
         heads[q].edge = heads[q].next < heads[q].end ? work.first_in[by_queue[heads[q].next]] : 0;
     }
-    std::vector<std::uint8_t> placed(count, 0);
+    Scratch<std::uint8_t> placed(count, 0);
     ItemSchedule out;
     out.items.reserve(count);
     out.queue.reserve(count);
@@ -117,7 +117,7 @@ std::int64_t makespan_ns(const Work& work, const ItemSchedule& schedule, const C
     program.first_wait.reserve(count + 1);
     program.first_wait.push_back(0);
     program.producers.reserve(work.in.size());
-    std::vector<std::uint32_t> position(count, none);
+    Scratch<std::uint32_t> position(count, none);
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t item = schedule.items[i];
         position[item] = i;
@@ -163,7 +163,7 @@ ItemSchedule previous_schedule(const Work& work, const QueueTopology& topology, 
         return {};
     }
     ItemSchedule schedule;
-    std::vector<std::uint8_t> placed(work.pass.size(), 0);
+    Scratch<std::uint8_t> placed(work.pass.size(), 0);
     for (const PlannedPass& planned : previous.passes) {
         const std::uint32_t item = planned.pass < work.item_of.size() ? work.item_of[planned.pass] : none;
         if (item == none || placed[item] != 0 || planned.queue >= most_queues ||

@@ -15,11 +15,11 @@ inline constexpr std::uint32_t most_queues = 32;
 
 /// By pass: the queues that it may run on. A pass with one queue only is not free.
 struct QueueChoices {
-    std::vector<QueueMask> allowed;
-    std::vector<std::uint32_t> home; ///< the queue without any scheduling: the one asked for, or graphics
-    std::vector<QueueReason> reason; ///< why home
-    bool any_free = false;           ///< some kept pass has more than one queue
-    bool any_away = false;           ///< the home of some kept pass is not the graphics queue
+    Scratch<QueueMask> allowed;
+    Scratch<std::uint32_t> home; ///< the queue without any scheduling: the one asked for, or graphics
+    Scratch<QueueReason> reason; ///< why home
+    bool any_free = false;       ///< some kept pass has more than one queue
+    bool any_away = false;       ///< the home of some kept pass is not the graphics queue
 };
 /// O(accesses).
 [[nodiscard]] QueueChoices choose_queues(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,
@@ -30,13 +30,13 @@ struct QueueChoices {
 /// The kept passes as items, numbered in a topological order, with everything that the queue model needs.
 struct Work {
     std::uint32_t queue_count = 1;
-    std::vector<std::uint32_t> pass;     ///< by item
-    std::vector<std::uint32_t> item_of;  ///< by pass, `none` if it is left out
-    std::vector<std::uint32_t> first_in; ///< items + 1 entries into `in`
-    std::vector<std::uint32_t> in;       ///< items that come before
-    std::vector<QueueMask> allowed;      ///< by item
-    std::vector<std::uint32_t> home;     ///< by item
-    std::vector<std::int64_t> duration_ns;
+    Scratch<std::uint32_t> pass;     ///< by item
+    Scratch<std::uint32_t> item_of;  ///< by pass, `none` if it is left out
+    Scratch<std::uint32_t> first_in; ///< items + 1 entries into `in`
+    Scratch<std::uint32_t> in;       ///< items that come before
+    Scratch<QueueMask> allowed;      ///< by item
+    Scratch<std::uint32_t> home;     ///< by item
+    Scratch<std::int64_t> duration_ns;
 };
 /// O(passes + edges).
 [[nodiscard]] Work collect_work(const Flow& flow, const Order& order, const Kept& kept, const QueueChoices& choices,
@@ -45,8 +45,8 @@ struct Work {
 /// Items in submission order, which respects all edges, and the queue of each. Only the order on each queue means
 /// anything; `merged` gives all schedules with the same queues the same form.
 struct ItemSchedule {
-    std::vector<std::uint32_t> items;
-    std::vector<std::uint32_t> queue; ///< parallel to items
+    Scratch<std::uint32_t> items;
+    Scratch<std::uint32_t> queue; ///< parallel to items
     friend bool operator==(const ItemSchedule&, const ItemSchedule&) = default;
 };
 /// Everything at home, in the order of the items.
@@ -59,13 +59,13 @@ struct ItemSchedule {
 /// The upward ranks of HEFT: by item, the longest way from its start to the frame's end, with the mean cost of crossing
 /// queues on each edge. And the items in that order, the longest way first; ties by number.
 struct Urgency {
-    std::vector<std::int64_t> rank_ns;
-    std::vector<std::uint32_t> items;
+    Scratch<std::int64_t> rank_ns;
+    Scratch<std::uint32_t> items;
 };
 /// O(items log items + edges).
 [[nodiscard]] Urgency urgency_of(const Work& work, const Costs& costs);
 /// By item: the longest way from its end to the frame's end, with a wait only where no queue can run both passes.
-[[nodiscard]] std::vector<std::int64_t> tails(const Work& work, std::int64_t cross_ns);
+[[nodiscard]] Scratch<std::int64_t> tails(const Work& work, std::int64_t cross_ns);
 /// No schedule of these items on these queues is shorter: critical path, work bound to one queue, all work over all
 /// queues, each with the slowdown of the model and with what must come before and after. O(items x queues + edges).
 [[nodiscard]] std::int64_t lower_bound_ns(const Work& work, const Urgency& urgency, const Costs& costs);

@@ -12,9 +12,9 @@ bool is_attachment(Access access) {
 }
 
 /// By use: some cell that it writes is read later.
-std::vector<bool> needed_later(const GraphDesc& graph, const Cells& cells, const Schedule& schedule) {
-    std::vector<bool> needed(schedule.uses.size(), false);
-    std::vector<bool> read_next; // by cell: the next use reads
+Scratch<bool> needed_later(const GraphDesc& graph, const Cells& cells, const Schedule& schedule) {
+    Scratch<bool> needed(schedule.uses.size(), false);
+    Scratch<bool> read_next; // by cell: the next use reads
     for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
         const ResourceDesc& desc = graph.resources[resource];
         const bool leaves_frame = desc.has_history || desc.lifetime == ResourceLifetime::imported;
@@ -33,7 +33,7 @@ std::vector<bool> needed_later(const GraphDesc& graph, const Cells& cells, const
 } // namespace
 
 Attachments choose_attachment_operations(const GraphDesc& graph, const Cells& cells, const Schedule& schedule) {
-    const std::vector<bool> needed = needed_later(graph, cells, schedule);
+    const Scratch<bool> needed = needed_later(graph, cells, schedule);
     const auto stored = [&](const AccessDesc& access) {
         bool any = false;
         for (std::uint32_t i = schedule.first_use[access.resource]; i < schedule.first_use[access.resource + 1]; ++i) {

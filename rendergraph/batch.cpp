@@ -9,8 +9,8 @@ namespace tyndall::rg::stages {
 
 Batches make_batches(const GraphDesc& graph, const Schedule& schedule) {
     const auto count = static_cast<std::uint32_t>(schedule.order.size());
-    std::vector<bool> signals(count, false);
-    std::vector<bool> waits(count, false);
+    Scratch<bool> signals(count, false);
+    Scratch<bool> waits(count, false);
     for (const QueueWait& wait : schedule.waits) {
         signals[wait.producer] = true;
         waits[wait.slot] = true;
@@ -20,7 +20,7 @@ Batches make_batches(const GraphDesc& graph, const Schedule& schedule) {
     Batches out;
     out.batches.reserve(2 * schedule.waits.size() + schedule.queue_count); // at most
     out.batch_of.assign(count, 0);
-    std::vector<std::uint32_t> open(schedule.queue_count, none);
+    Scratch<std::uint32_t> open(schedule.queue_count, none);
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         const std::uint32_t queue = schedule.queue[slot];
         if (open[queue] == none || waits[slot]) {
@@ -34,7 +34,7 @@ Batches make_batches(const GraphDesc& graph, const Schedule& schedule) {
             open[queue] = none;
         }
     }
-    std::vector<std::uint32_t> next; // place in `order` of each batch's next pass
+    Scratch<std::uint32_t> next; // place in `order` of each batch's next pass
     next.reserve(out.batches.size());
     std::uint32_t first_pass = 0;
     for (Batch& batch : out.batches) {

@@ -24,8 +24,8 @@ VkDeviceSize end_of(const ResourceDesc& resource, const BufferRange& range) {
 
 } // namespace
 
-std::vector<CellRange> as_rectangles(const ResourceCells& resource, std::span<const std::uint32_t> cells) {
-    std::vector<CellRange> runs;
+Scratch<CellRange> as_rectangles(const ResourceCells& resource, std::span<const std::uint32_t> cells) {
+    Scratch<CellRange> runs;
     for (const std::uint32_t cell : cells) {
         const std::uint32_t mip = cell / resource.layers;
         const std::uint32_t layer = cell % resource.layers;
@@ -36,7 +36,7 @@ std::vector<CellRange> as_rectangles(const ResourceCells& resource, std::span<co
             runs.push_back({mip, 1, layer, 1});
         }
     }
-    std::vector<CellRange> merged;
+    Scratch<CellRange> merged;
     for (const CellRange& run : runs) {
         const auto above = std::find_if(merged.begin(), merged.end(), [&](const CellRange& other) {
             return other.first_mip + other.mip_count == run.first_mip && other.first_layer == run.first_layer &&

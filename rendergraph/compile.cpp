@@ -82,7 +82,7 @@ stages::Schedule schedule_what_pays(const GraphDesc& graph, const QueueTopology&
 
 /// Gives each wait the first dependency that shows why; `none` stays where only the order of memory asks for it.
 /// O(dependencies x queues).
-void name_reasons_of_waits(const std::vector<std::uint32_t>& batch_of_pass, Plan& plan) {
+void name_reasons_of_waits(std::span<const std::uint32_t> batch_of_pass, Plan& plan) {
     for (std::uint32_t i = 0; i < plan.dependencies.size(); ++i) {
         const Dependency& d = plan.dependencies[i];
         if (d.consumer == none || d.producer == none) {
@@ -101,6 +101,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
                                               const MemoryRequirements& memory, const CompileOptions& options,
                                               const Costs& costs, const Plan* previous, std::uint64_t passes_hash) {
     using namespace stages;
+    const ScratchScope scope; // the forms of a variant take turns
     const Cells cells = cut_into_cells(graph);
     Flow everything = follow_versions(graph, cells);
     const Order order = order_passes(graph, everything);
@@ -133,7 +134,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
     plan.culled_passes = std::move(kept.culled_passes);
     plan.culled_resources = std::move(kept.culled_resources);
     plan.passes.reserve(batches.order.size());
-    std::vector<std::uint32_t> batch_of_pass(graph.passes.size(), none);
+    Scratch<std::uint32_t> batch_of_pass(graph.passes.size(), none);
     for (const std::uint32_t slot : batches.order) {
         const std::uint32_t pass = sched.order[slot];
         batch_of_pass[pass] = batches.batch_of[slot];
@@ -175,6 +176,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
 tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopology& topology,
                                         const MemoryRequirements& memory, const CompileOptions& options,
                                         const Costs& costs, const Plan* previous) {
+    const stages::ScratchScope scope;
     Diagnostics errors = graph.declaration_errors;
     append(errors, stages::validate(graph, topology));
     if (!errors.empty()) {

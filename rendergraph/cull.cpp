@@ -29,15 +29,15 @@ Kept cull(const GraphDesc& graph, const Flow& flow, const Order& order, bool ena
         }
     }
     // Edges are sorted by consumer: with the order backward, each pass is decided before its producers are visited.
-    std::vector<std::uint32_t> first_in(count + 1, 0);
+    Scratch<std::uint32_t> first_in(count + 1, 0);
     for (const Edge& edge : flow.edges) {
         ++first_in[edge.to + 1];
     }
     for (std::size_t i = 0; i < count; ++i) {
         first_in[i + 1] += first_in[i];
     }
-    std::vector<std::uint32_t> first_consumer(count, none);
-    std::vector<std::uint32_t> first_output(count, none);
+    Scratch<std::uint32_t> first_consumer(count, none);
+    Scratch<std::uint32_t> first_output(count, none);
     for (auto pass = order.passes.rbegin(); pass != order.passes.rend(); ++pass) {
         for (std::uint32_t i = first_in[*pass]; i < first_in[*pass + 1]; ++i) {
             const Edge& edge = flow.edges[i];
@@ -56,8 +56,8 @@ Kept cull(const GraphDesc& graph, const Flow& flow, const Order& order, bool ena
             first_output[access.pass] = access.resource;
         }
     }
-    std::vector<bool> touched(graph.resources.size(), false);
-    std::vector<bool> touched_by_kept(graph.resources.size(), false);
+    Scratch<bool> touched(graph.resources.size(), false);
+    Scratch<bool> touched_by_kept(graph.resources.size(), false);
     for (std::uint32_t pass = 0; pass < count; ++pass) {
         // What touches nothing is of another form than the one compiled; it goes even with culling off.
         const bool may_go = enabled || graph.passes[pass].access_count == 0;

@@ -40,7 +40,7 @@ std::int64_t threshold_ns(const Work& work, const Costs& costs, std::int64_t ser
 
 /// The same queues, each in the order of the items, which is that of declaration where the data allow it.
 ItemSchedule in_item_order(const ItemSchedule& schedule) {
-    std::vector<std::uint32_t> queue_of(schedule.items.size());
+    Scratch<std::uint32_t> queue_of(schedule.items.size());
     for (std::size_t i = 0; i < schedule.items.size(); ++i) {
         queue_of[schedule.items[i]] = schedule.queue[i];
     }

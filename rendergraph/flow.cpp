@@ -20,13 +20,13 @@ struct Reader {
 };
 
 /// Sorts by (to, from, hazard, resource): buckets by `to`, which are small, each sorted. O(edges log edges of a pass).
-void sort_edges(std::vector<Edge>& edges, std::size_t pass_count) {
-    std::vector<std::uint32_t> next(pass_count + 1, 0);
+void sort_edges(Scratch<Edge>& edges, std::size_t pass_count) {
+    Scratch<std::uint32_t> next(pass_count + 1, 0);
     for (const Edge& edge : edges) {
         ++next[edge.to + 1];
     }
     std::partial_sum(next.begin(), next.end(), next.begin());
-    std::vector<Edge> sorted(edges.size());
+    Scratch<Edge> sorted(edges.size());
     for (const Edge& edge : edges) {
         sorted[next[edge.to]++] = edge;
     }
@@ -46,7 +46,7 @@ std::string quoted(const std::string& name) {
 
 class Follower {
 public:
-    Follower(const GraphDesc& graph, const Cells& cells, const std::vector<bool>* kept)
+    Follower(const GraphDesc& graph, const Cells& cells, const Scratch<bool>* kept)
         : graph_(graph), cells_(cells), kept_(kept) {}
 
     Flow run() {
@@ -77,7 +77,7 @@ private:
         }
         std::partial_sum(first_access_.begin(), first_access_.end(), first_access_.begin());
         accesses_.resize(first_access_.back());
-        std::vector<std::uint32_t> next(first_access_.begin(), first_access_.end() - 1);
+        Scratch<std::uint32_t> next(first_access_.begin(), first_access_.end() - 1);
         for (std::uint32_t i = 0; i < graph_.accesses.size(); ++i) {
             if (exists(graph_.accesses[i])) {
                 accesses_[next[graph_.accesses[i].resource]++] = i;
@@ -191,17 +191,17 @@ private:
 
     const GraphDesc& graph_;
     const Cells& cells_;
-    const std::vector<bool>* kept_;
+    const Scratch<bool>* kept_;
     Flow flow_;
-    std::vector<std::uint32_t> accesses_;     ///< indices by resource
-    std::vector<std::uint32_t> first_access_; ///< by resource, resources + 1 entries into accesses_
-    std::vector<CellState> states_;           ///< of the resource at hand, by cell
-    std::vector<Reader> readers_;             ///< of the resource at hand
+    Scratch<std::uint32_t> accesses_;     ///< indices by resource
+    Scratch<std::uint32_t> first_access_; ///< by resource, resources + 1 entries into accesses_
+    Scratch<CellState> states_;           ///< of the resource at hand, by cell
+    Scratch<Reader> readers_;             ///< of the resource at hand
 };
 
 } // namespace
 
-Flow follow_versions(const GraphDesc& graph, const Cells& cells, const std::vector<bool>* kept) {
+Flow follow_versions(const GraphDesc& graph, const Cells& cells, const Scratch<bool>* kept) {
     return Follower(graph, cells, kept).run();
 }
 

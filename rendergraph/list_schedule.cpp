@@ -77,8 +77,8 @@ private:
 };
 
 /// By queue: the work that can run nowhere else.
-std::vector<std::int64_t> bound_work(const Work& work) {
-    std::vector<std::int64_t> bound(work.queue_count, 0);
+Scratch<std::int64_t> bound_work(const Work& work) {
+    Scratch<std::int64_t> bound(work.queue_count, 0);
     for (std::uint32_t item = 0; item < work.pass.size(); ++item) {
         if (std::has_single_bit(work.allowed[item])) {
             bound[static_cast<std::uint32_t>(std::countr_zero(work.allowed[item]))] += work.duration_ns[item];
@@ -91,17 +91,17 @@ std::vector<std::int64_t> bound_work(const Work& work) {
 
 ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs& costs,
                            std::int64_t reluctance_permille) {
-    std::vector<std::int64_t> unplaced = bound_work(work); // of it, by queue
+    Scratch<std::int64_t> unplaced = bound_work(work); // of it, by queue
     const std::int64_t total = std::accumulate(work.duration_ns.begin(), work.duration_ns.end(), std::int64_t{1});
-    std::vector<std::int64_t> share(unplaced.size()); // in permille of a fair share of all work
+    Scratch<std::int64_t> share(unplaced.size()); // in permille of a fair share of all work
     std::transform(unplaced.begin(), unplaced.end(), share.begin(), [&](std::int64_t bound) {
         return bound / permille * work.queue_count * reluctance_permille / (total / permille + 1);
     });
     const std::int64_t cross_ns = cross_queue_within_limits(costs);
     const auto count = static_cast<std::uint32_t>(work.pass.size());
-    std::vector<Lane> lanes(work.queue_count);
-    std::vector<std::int64_t> starts(count);
-    std::vector<std::uint32_t> queue(count);
+    Scratch<Lane> lanes(work.queue_count);
+    Scratch<std::int64_t> starts(count);
+    Scratch<std::uint32_t> queue(count);
     for (const std::uint32_t item : urgency.items) {
         const std::int64_t duration = work.duration_ns[item];
         const bool free = !std::has_single_bit(work.allowed[item]);

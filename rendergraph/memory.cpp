@@ -37,10 +37,6 @@ MemoryRequirements estimate_memory(const GraphDesc& graph) {
 namespace stages {
 namespace {
 
-VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
 /// The heap of a memory type; made when it is new.
 std::uint32_t heap_of(std::vector<Heap>& heaps, std::uint32_t memory_type_bits) {
     std::uint32_t heap = 0;
@@ -55,7 +51,7 @@ std::uint32_t heap_of(std::vector<Heap>& heaps, std::uint32_t memory_type_bits) 
 
 /// One behind the other.
 Packing pack_without_sharing(std::span<const Block> blocks, std::uint32_t heap_count) {
-    Packing packing{std::vector<VkDeviceSize>(blocks.size()), std::vector<VkDeviceSize>(heap_count, 0)};
+    Packing packing{Scratch<VkDeviceSize>(blocks.size()), Scratch<VkDeviceSize>(heap_count, 0)};
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         VkDeviceSize& heap_bytes = packing.heap_bytes[blocks[i].heap];
         packing.offset_bytes[i] = align_up(heap_bytes, blocks[i].alignment);
@@ -72,11 +68,11 @@ void find_owners_before(std::span<const Block> blocks, const Packing& packing, M
         VkDeviceSize end;
         std::uint32_t resource;
     };
-    std::vector<std::vector<Owned>> heaps(packing.heap_bytes.size()); // each by begin, without overlap
-    std::vector<Owned> remains;
+    Scratch<Scratch<Owned>> heaps(packing.heap_bytes.size()); // each by begin, without overlap
+    Scratch<Owned> remains;
     memory.owners_before.reserve(blocks.size());
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
-        std::vector<Owned>& owners = heaps[blocks[i].heap];
+        Scratch<Owned>& owners = heaps[blocks[i].heap];
         const Owned block{packing.offset_bytes[i], packing.offset_bytes[i] + blocks[i].size_bytes, blocks[i].resource};
         const auto first = std::partition_point(owners.begin(), owners.end(),
                                                 [&](const Owned& owned) { return owned.end <= block.begin; });
@@ -115,7 +111,7 @@ void find_owners_before(std::span<const Block> blocks, const Packing& packing, M
 VkDeviceSize largest_live_set(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives) {
     const std::uint32_t queues = schedule.queue_count;
     const std::size_t slots = schedule.order.size() + 1;
-    std::vector<VkDeviceSize> change(slots * queues, 0); // wraps where bytes leave
+    Scratch<VkDeviceSize> change(slots * queues, 0); // wraps where bytes leave
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         for (std::uint32_t q = 0; q < queues; ++q) {
             const std::uint32_t begin = lives.live_begin[i * queues + q];
@@ -146,7 +142,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     memory.placements.resize(count);
     memory.first_owner_before.resize(count, 0);
     memory.owner_before_count.resize(count, 0);
-    std::vector<Block> blocks;
+    Scratch<Block> blocks;
     blocks.reserve(count);
     for (std::uint32_t resource = 0; resource < count; ++resource) {
         const ResourceDesc& desc = graph.resources[resource];
@@ -206,14 +202,15 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         }
     }
 
-    std::stable_sort(blocks.begin(), blocks.end(),
-                     [](const Block& a, const Block& b) { return a.first_slot < b.first_slot; });
+    std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) {
+        return a.first_slot != b.first_slot ? a.first_slot < b.first_slot : a.resource < b.resource;
+    });
     const auto heap_count = static_cast<std::uint32_t>(memory.heaps.size());
     const Lives lives = find_lives(schedule, blocks);
     const Conflicts conflicts = find_conflicts(schedule, blocks, lives);
     const std::size_t tries = std::clamp<std::size_t>(blocks.size() / 8, 2, 16); // cheap beside the packing
-    memory.bound_bytes = std::max(exclusive_bytes(blocks, conflicts, lives, heap_count, tries),
-                                  largest_live_set(schedule, blocks, lives));
+    memory.bound_bytes =
+        std::max(exclusive_bytes(blocks, conflicts, heap_count, tries), largest_live_set(schedule, blocks, lives));
     const Packing packing =
         aliasing ? pack(blocks, conflicts, heap_count, memory.bound_bytes) : pack_without_sharing(blocks, heap_count);
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {

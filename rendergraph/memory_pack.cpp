@@ -9,10 +9,6 @@
 namespace tyndall::rg::stages {
 namespace {
 
-VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
 struct Extent {
     VkDeviceSize begin;
     VkDeviceSize end;
@@ -45,10 +41,12 @@ VkDeviceSize smallest_gap(std::span<Extent> taken, const Block& block, VkDeviceS
     VkDeviceSize best = 0;
     VkDeviceSize best_size = ~VkDeviceSize{0};
     for (const Extent& extent : taken) {
-        const VkDeviceSize offset = align_up(cursor, block.alignment);
-        if (offset + block.size_bytes <= extent.begin && extent.begin - cursor < best_size) {
-            best = offset;
-            best_size = extent.begin - cursor;
+        if (cursor < extent.begin && extent.begin - cursor < best_size) {
+            const VkDeviceSize offset = align_up(cursor, block.alignment);
+            if (offset + block.size_bytes <= extent.begin) {
+                best = offset;
+                best_size = extent.begin - cursor;
+            }
         }
         cursor = std::max(cursor, extent.end);
     }
@@ -64,8 +62,9 @@ template <typename FindGap>
 std::size_t pack_in_order(std::span<const Block> blocks, const Conflicts& conflicts,
                           std::span<const std::uint32_t> order, FindGap&& find_gap, VkDeviceSize limit_bytes,
                           Packing& packing) {
-    std::vector<Extent> placed(blocks.size(), {unplaced, unplaced});
-    std::vector<Extent> taken;
+    const ScratchScope scope;
+    Scratch<Extent> placed(blocks.size(), {unplaced, unplaced});
+    Scratch<Extent> taken;
     taken.reserve(blocks.size());
     std::fill(packing.heap_bytes.begin(), packing.heap_bytes.end(), 0);
     packing.total_bytes = 0;
@@ -97,12 +96,12 @@ std::size_t pack_in_order(std::span<const Block> blocks, const Conflicts& confli
 
 Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
              VkDeviceSize bound_bytes) {
-    Packing best{std::vector<VkDeviceSize>(blocks.size()), std::vector<VkDeviceSize>(heap_count)};
+    Packing best{Scratch<VkDeviceSize>(blocks.size()), Scratch<VkDeviceSize>(heap_count)};
     Packing other = best;
-    std::vector<std::uint32_t> as_they_come(blocks.size()); // by first slot
+    Scratch<std::uint32_t> as_they_come(blocks.size()); // by first slot
     std::iota(as_they_come.begin(), as_they_come.end(), 0U);
     const auto descending_by = [&](auto key) {
-        std::vector<std::uint32_t> order = as_they_come;
+        Scratch<std::uint32_t> order = as_they_come;
         std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
             const auto key_a = key(blocks[a]);
             const auto key_b = key(blocks[b]);
@@ -114,13 +113,13 @@ Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uin
         return lowest_gap(taken, block);
     };
     const auto life = [](const Block& block) { return block.last_slot - block.first_slot + 1; };
-    std::vector<std::uint32_t> order = descending_by([](const Block& block) { return block.size_bytes; });
+    Scratch<std::uint32_t> order = descending_by([](const Block& block) { return block.size_bytes; });
     pack_in_order(blocks, conflicts, order, smallest_gap, unplaced, best);
     if (best.total_bytes <= bound_bytes) {
         return best;
     }
 
-    const auto improve = [&](std::vector<std::uint32_t> tried, std::size_t rounds) {
+    const auto improve = [&](Scratch<std::uint32_t> tried, std::size_t rounds) {
         for (std::size_t round = 0; round < rounds && best.total_bytes > bound_bytes; ++round) {
             const std::size_t end = pack_in_order(blocks, conflicts, tried, find_lowest, best.total_bytes, other);
             if (end == tried.size()) {

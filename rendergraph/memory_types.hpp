@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "rendergraph/stages.hpp"
 
 namespace tyndall::rg::stages {
+
+/// `alignment` is a power of two.
+[[nodiscard]] inline VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
+    return (value + alignment - 1) & ~(alignment - 1);
+}
 
 /// A resource to be placed.
 struct Block {
@@ -22,16 +26,15 @@ struct Block {
 /// Where blocks live in the schedule's partial order, by block x queue, as positions on the queue.
 struct Lives {
     std::uint32_t queue_count = 1;
-    std::vector<std::uint32_t> first;      ///< of its first use, `none` if the queue does not use it
-    std::vector<std::uint32_t> after;      ///< the first position that comes after all of its uses
-    std::vector<std::uint32_t> live_begin; ///< the first position that comes after, or is, one of its uses
-    std::vector<std::uint32_t> live_end;   ///< one past the last position that comes before, or is, one of its uses
+    Scratch<std::uint32_t> first;      ///< of its first use, `none` if the queue does not use it
+    Scratch<std::uint32_t> after;      ///< the first position that comes after all of its uses
+    Scratch<std::uint32_t> live_begin; ///< the first position that comes after, or is, one of its uses
+    Scratch<std::uint32_t> live_end;   ///< one past the last position that comes before, or is, one of its uses
 
     /// Every use of `a` happens before every use of `b`.
     [[nodiscard]] bool entirely_before(std::uint32_t a, std::uint32_t b) const {
         for (std::uint32_t q = 0; q < queue_count; ++q) {
-            const std::uint32_t begin = first[b * queue_count + q];
-            if (begin != none && begin < after[a * queue_count + q]) {
+            if (first[b * queue_count + q] < after[a * queue_count + q]) { // never where it is `none`
                 return false;
             }
         }
@@ -43,8 +46,8 @@ struct Lives {
 
 /// For each block those that may not share bytes with it, in rows: `of(block)`.
 struct Conflicts {
-    std::vector<std::uint32_t> first; ///< blocks + 1 entries into `with`
-    std::vector<std::uint32_t> with;
+    Scratch<std::uint32_t> first; ///< blocks + 1 entries into `with`
+    Scratch<std::uint32_t> with;
     [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t block) const {
         return {with.data() + first[block], first[block + 1] - first[block]};
     }
@@ -54,13 +57,13 @@ struct Conflicts {
 [[nodiscard]] Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives);
 
 /// Bytes that no packing can do without: for each heap the largest set found of blocks that all exclude each other.
-/// Greedy from the `tries` blocks whose conflicts weigh most. O(conflicts + tries x row squared x queues).
+/// Greedy from the `tries` blocks whose conflicts weigh most. O(conflicts + tries x row squared).
 [[nodiscard]] VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& conflicts,
-                                           const Lives& lives, std::uint32_t heap_count, std::size_t tries);
+                                           std::uint32_t heap_count, std::size_t tries);
 
 struct Packing {
-    std::vector<VkDeviceSize> offset_bytes; ///< by block
-    std::vector<VkDeviceSize> heap_bytes;   ///< by heap
+    Scratch<VkDeviceSize> offset_bytes; ///< by block
+    Scratch<VkDeviceSize> heap_bytes;   ///< by heap
     VkDeviceSize total_bytes = 0;
 };
 /// Greedy orders, of which the lowest total is kept, the first of equals: by size, descending, each into the smallest

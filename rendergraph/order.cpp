@@ -10,8 +10,8 @@ namespace tyndall::rg::stages {
 namespace {
 
 /// Names of the passes of one cycle among those that `remaining` marks; every such pass has a predecessor among them.
-std::vector<std::uint32_t> find_cycle(const Flow& flow, const std::vector<std::uint32_t>& remaining) {
-    std::vector<std::uint32_t> predecessor(remaining.size(), none);
+Scratch<std::uint32_t> find_cycle(const Flow& flow, const Scratch<std::uint32_t>& remaining) {
+    Scratch<std::uint32_t> predecessor(remaining.size(), none);
     for (const Edge& edge : flow.edges) {
         if (remaining[edge.from] != 0 && remaining[edge.to] != 0 && predecessor[edge.to] == none) {
             predecessor[edge.to] = edge.from;
@@ -19,12 +19,12 @@ std::vector<std::uint32_t> find_cycle(const Flow& flow, const std::vector<std::u
     }
     auto at = static_cast<std::uint32_t>(
         std::find_if(remaining.begin(), remaining.end(), [](std::uint32_t n) { return n != 0; }) - remaining.begin());
-    std::vector<bool> seen(remaining.size(), false);
+    Scratch<bool> seen(remaining.size(), false);
     while (!seen[at]) {
         seen[at] = true;
         at = predecessor[at];
     }
-    std::vector<std::uint32_t> cycle = {at};
+    Scratch<std::uint32_t> cycle = {at};
     for (std::uint32_t next = predecessor[at]; next != at; next = predecessor[next]) {
         cycle.push_back(next);
     }
@@ -38,8 +38,8 @@ std::vector<std::uint32_t> find_cycle(const Flow& flow, const std::vector<std::u
 Order order_passes(const GraphDesc& graph, const Flow& flow) {
     Order order;
     const std::size_t count = graph.passes.size();
-    std::vector<std::uint32_t> incoming(count, 0);
-    std::vector<std::uint32_t> first_out(count + 1, 0);
+    Scratch<std::uint32_t> incoming(count, 0);
+    Scratch<std::uint32_t> first_out(count + 1, 0);
     for (const Edge& edge : flow.edges) {
         ++incoming[edge.to];
         ++first_out[edge.from + 1];
@@ -47,12 +47,12 @@ Order order_passes(const GraphDesc& graph, const Flow& flow) {
     for (std::size_t i = 0; i < count; ++i) {
         first_out[i + 1] += first_out[i];
     }
-    std::vector<std::uint32_t> out(flow.edges.size());
-    std::vector<std::uint32_t> fill(first_out.begin(), first_out.end() - 1);
+    Scratch<std::uint32_t> out(flow.edges.size());
+    Scratch<std::uint32_t> fill(first_out.begin(), first_out.end() - 1);
     for (const Edge& edge : flow.edges) {
         out[fill[edge.from]++] = edge.to;
     }
-    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> ready;
+    std::priority_queue<std::uint32_t, Scratch<std::uint32_t>, std::greater<>> ready;
     for (std::uint32_t pass = 0; pass < count; ++pass) {
         if (incoming[pass] == 0) {
             ready.push(pass);
@@ -70,7 +70,7 @@ Order order_passes(const GraphDesc& graph, const Flow& flow) {
         }
     }
     if (order.passes.size() < count) {
-        const std::vector<std::uint32_t> cycle = find_cycle(flow, incoming);
+        const Scratch<std::uint32_t> cycle = find_cycle(flow, incoming);
         std::string chain;
         for (const std::uint32_t pass : cycle) {
             chain += (chain.empty() ? "'" : " -> '") + graph.passes[pass].name + "'";

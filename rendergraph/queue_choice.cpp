@@ -36,8 +36,8 @@ Choice asked_queue(const PassDesc& pass, const QueueTopology& topology, bool asy
 bool keep_unshared_imports_together(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,
                                     QueueChoices& choices) {
     const auto family = [&](std::uint32_t pass) { return topology.queues[choices.home[pass]].family; };
-    std::vector<std::uint32_t> family_of(graph.resources.size(), none);
-    std::vector<bool> torn(graph.resources.size(), false);
+    Scratch<std::uint32_t> family_of(graph.resources.size(), none);
+    Scratch<bool> torn(graph.resources.size(), false);
     for (const AccessDesc& access : graph.accesses) {
         const ResourceDesc& resource = graph.resources[access.resource];
         if (kept.pass[access.pass] && resource.import != none && !resource.concurrent) {

@@ -63,7 +63,7 @@ QueueRun run_queues(const QueueProgram& program, const Costs& costs) {
     run.start_ns.assign(count, 0);
     run.end_ns.assign(count, unfinished);
 
-    std::vector<Lane> lanes(program.queue_count);
+    Scratch<Lane> lanes(program.queue_count);
     for (const std::uint32_t queue : program.queue) {
         ++lanes[queue].end;
     }
@@ -71,8 +71,8 @@ QueueRun run_queues(const QueueProgram& program, const Costs& costs) {
         lanes[q].next = lanes[q - 1].end;
         lanes[q].end += lanes[q].next;
     }
-    std::vector<std::uint32_t> items(count);
-    std::vector<std::uint32_t> fill(program.queue_count);
+    Scratch<std::uint32_t> items(count);
+    Scratch<std::uint32_t> fill(program.queue_count);
     std::transform(lanes.begin(), lanes.end(), fill.begin(), [](const Lane& lane) { return lane.next; });
     for (std::uint32_t item = 0; item < count; ++item) {
         items[fill[program.queue[item]]++] = item;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "rendergraph/costs.hpp"
+#include "rendergraph/scratch.hpp"
 
 namespace tyndall::rg::stages {
 
@@ -25,14 +25,14 @@ inline constexpr std::int64_t largest_slowdown_permille = 10'000;
 /// Passes ("items") in submission order, each on a queue, with the items on other queues that it waits for.
 struct QueueProgram {
     std::uint32_t queue_count = 1;
-    std::vector<std::uint32_t> queue;      ///< by item
-    std::vector<std::int64_t> duration_ns; ///< by item, alone on the device
-    std::vector<std::uint32_t> first_wait; ///< items + 1 entries into `producers`
-    std::vector<std::uint32_t> producers;  ///< items
+    Scratch<std::uint32_t> queue;      ///< by item
+    Scratch<std::int64_t> duration_ns; ///< by item, alone on the device
+    Scratch<std::uint32_t> first_wait; ///< items + 1 entries into `producers`
+    Scratch<std::uint32_t> producers;  ///< items
 };
 struct QueueRun {
-    std::vector<std::int64_t> start_ns; ///< by item
-    std::vector<std::int64_t> end_ns;
+    Scratch<std::int64_t> start_ns; ///< by item
+    Scratch<std::int64_t> end_ns;
     std::int64_t makespan_ns = 0;
 };
 /// Event by event, in whole nanoseconds. Items behind a wait that nothing answers start and end at the makespan.

@@ -17,8 +17,8 @@ std::int64_t forced_wait_ns(const Work& work, std::uint32_t from, std::uint32_t 
 }
 
 /// By item: the longest way from the frame's start to its start.
-std::vector<std::int64_t> heads(const Work& work, std::int64_t cross_ns) {
-    std::vector<std::int64_t> head(work.pass.size(), 0);
+Scratch<std::int64_t> heads(const Work& work, std::int64_t cross_ns) {
+    Scratch<std::int64_t> head(work.pass.size(), 0);
     for (std::uint32_t item = 0; item < head.size(); ++item) {
         for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
             const std::uint32_t from = work.in[edge];
@@ -57,13 +57,13 @@ private:
     std::int64_t queues_;
     std::int64_t slowdown_;
     std::int64_t total_ = 0;
-    std::vector<std::int64_t> bound_to_; ///< by queue
+    Scratch<std::int64_t> bound_to_; ///< by queue
 };
 
 } // namespace
 
-std::vector<std::int64_t> tails(const Work& work, std::int64_t cross_ns) {
-    std::vector<std::int64_t> tail(work.pass.size(), 0);
+Scratch<std::int64_t> tails(const Work& work, std::int64_t cross_ns) {
+    Scratch<std::int64_t> tail(work.pass.size(), 0);
     for (auto item = static_cast<std::uint32_t>(work.pass.size()); item-- > 0;) {
         for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
             const std::uint32_t from = work.in[edge];
@@ -77,7 +77,7 @@ std::vector<std::int64_t> tails(const Work& work, std::int64_t cross_ns) {
 Urgency urgency_of(const Work& work, const Costs& costs) {
     const std::int64_t cross_ns = cross_queue_within_limits(costs);
     Urgency urgency;
-    std::vector<std::int64_t>& rank = urgency.rank_ns;
+    Scratch<std::int64_t>& rank = urgency.rank_ns;
     rank.assign(work.pass.size(), 0);
     for (auto item = static_cast<std::uint32_t>(work.pass.size()); item-- > 0;) {
         rank[item] += work.duration_ns[item];
@@ -114,8 +114,8 @@ std::int64_t lower_bound_ns(const Work& work, const Urgency& urgency, const Cost
     if (queues < 2 || slowdown >= queues * permille) {
         return total; // even with all queues busy no more is done than by one
     }
-    const std::vector<std::int64_t> head = heads(work, cross_ns);
-    const std::vector<std::int64_t> tail = tails(work, cross_ns);
+    const Scratch<std::int64_t> head = heads(work, cross_ns);
+    const Scratch<std::int64_t> tail = tails(work, cross_ns);
     std::int64_t bound = 0;
     Load first(work, queues, slowdown);
     std::int64_t shortest_tail = std::numeric_limits<std::int64_t>::max();

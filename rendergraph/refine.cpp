@@ -68,6 +68,7 @@ Plan as_previous(const Work& work, const ItemSchedule& schedule, const Plan& lik
 tl::expected<Refined, Diagnostics> refine_schedule(const GraphDesc& graph, const QueueTopology& topology,
                                                    const MemoryRequirements& memory, const CompileOptions& options,
                                                    const Costs& costs, const Plan* previous, std::uint64_t most_steps) {
+    const ScratchScope scope;
     tl::expected<Plan, Diagnostics> compiled = compile(graph, topology, memory, options, costs, previous);
     if (!compiled) {
         return tl::unexpected(std::move(compiled.error()));

@@ -15,7 +15,7 @@ namespace {
 /// Merges accesses of one pass to the same cells of one resource into one use, grouped by resource.
 void collect_uses(const GraphDesc& graph, const Cells& cells, Schedule& schedule) {
     const auto resources = static_cast<std::uint32_t>(graph.resources.size());
-    std::vector<std::uint32_t> first(resources + 1, 0);
+    Scratch<std::uint32_t> first(resources + 1, 0);
     for (const AccessDesc& access : graph.accesses) {
         first[access.resource + 1] += schedule.slot_of[access.pass] != none ? 1 : 0;
     }
@@ -23,7 +23,7 @@ void collect_uses(const GraphDesc& graph, const Cells& cells, Schedule& schedule
         first[resource + 1] += first[resource];
     }
     schedule.uses.resize(first[resources]);
-    std::vector<std::uint32_t> end(first.begin(), first.end() - 1);
+    Scratch<std::uint32_t> end(first.begin(), first.end() - 1);
     const auto same_cells = [](const CellRange& a, const CellRange& b) {
         return a.first_mip == b.first_mip && a.mip_count == b.mip_count && a.first_layer == b.first_layer &&
                a.layer_count == b.layer_count;
@@ -80,7 +80,7 @@ struct SlotEdge {
 class GroupWalk {
 public:
     GroupWalk(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells, Schedule& schedule,
-              std::vector<SlotEdge>& edges)
+              Scratch<SlotEdge>& edges)
         : graph_(graph), topology_(topology), cells_(cells), schedule_(schedule), edges_(edges) {}
 
     void run() {
@@ -191,13 +191,13 @@ private:
     const QueueTopology& topology_;
     const Cells& cells_;
     Schedule& schedule_;
-    std::vector<SlotEdge>& edges_;
+    Scratch<SlotEdge>& edges_;
     CellUses cell_uses_; ///< of the resource at hand
 };
 
 /// Edges grouped by the slot that they lead to; `first` has slots + 1 entries. O(edges + slots).
-std::vector<std::uint32_t> group_by_target(const std::vector<SlotEdge>& edges, std::size_t slots,
-                                           std::vector<std::uint32_t>& first) {
+Scratch<std::uint32_t> group_by_target(const Scratch<SlotEdge>& edges, std::size_t slots,
+                                       Scratch<std::uint32_t>& first) {
     first.assign(slots + 1, 0);
     for (const SlotEdge& edge : edges) {
         ++first[edge.to + 1];
@@ -205,8 +205,8 @@ std::vector<std::uint32_t> group_by_target(const std::vector<SlotEdge>& edges, s
     for (std::size_t slot = 0; slot < slots; ++slot) {
         first[slot + 1] += first[slot];
     }
-    std::vector<std::uint32_t> from(edges.size());
-    std::vector<std::uint32_t> fill(first.begin(), first.end() - 1);
+    Scratch<std::uint32_t> from(edges.size());
+    Scratch<std::uint32_t> fill(first.begin(), first.end() - 1);
     for (const SlotEdge& edge : edges) {
         from[fill[edge.to]++] = edge.from;
     }
@@ -214,14 +214,14 @@ std::vector<std::uint32_t> group_by_target(const std::vector<SlotEdge>& edges, s
 }
 
 /// Vector clocks in schedule order; a wait is dropped when another wait, or an earlier one of the queue, implies it.
-void derive_waits(const std::vector<SlotEdge>& edges, Schedule& schedule) {
-    std::vector<std::uint32_t> first_edge;
-    const std::vector<std::uint32_t> from_slot = group_by_target(edges, schedule.order.size(), first_edge);
+void derive_waits(const Scratch<SlotEdge>& edges, Schedule& schedule) {
+    Scratch<std::uint32_t> first_edge;
+    const Scratch<std::uint32_t> from_slot = group_by_target(edges, schedule.order.size(), first_edge);
     const std::uint32_t queues = schedule.queue_count;
     const auto count = static_cast<std::uint32_t>(schedule.order.size());
     schedule.clocks.assign(std::size_t{count} * queues, 0);
-    std::vector<std::uint32_t> last_on_queue(queues, none);
-    std::vector<std::uint32_t> latest(queues);
+    Scratch<std::uint32_t> last_on_queue(queues, none);
+    Scratch<std::uint32_t> latest(queues);
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         const std::uint32_t own = schedule.queue[slot];
         std::uint32_t* clock = schedule.clocks.data() + std::size_t{slot} * queues;
@@ -284,14 +284,14 @@ Schedule schedule(const GraphDesc& graph, const QueueTopology& topology, const C
     schedule.queue_reason = assignment.reason;
     schedule.slot_of.assign(graph.passes.size(), none);
     schedule.position.reserve(schedule.order.size());
-    std::vector<std::uint32_t> next_position(topology.queues.size(), 0);
+    Scratch<std::uint32_t> next_position(topology.queues.size(), 0);
     for (std::uint32_t slot = 0; slot < schedule.order.size(); ++slot) {
         schedule.slot_of[schedule.order[slot]] = slot;
         schedule.position.push_back(next_position[schedule.queue[slot]]++);
     }
     collect_uses(graph, cells, schedule);
 
-    std::vector<SlotEdge> edges;
+    Scratch<SlotEdge> edges;
     edges.reserve(flow.edges.size());
     for (const Edge& edge : flow.edges) {
         const std::uint32_t from = schedule.slot_of[edge.from];

@@ -24,7 +24,7 @@ public:
         best_.schedule = at_home(work_);
         best_.score = judge_(best_.schedule);
         for (const std::int64_t reluctance : {permille, permille / 2, std::int64_t{0}, 2 * permille}) {
-            consider(list_schedule(work_, urgency_, costs_, reluctance));
+            consider([&] { return list_schedule(work_, urgency_, costs_, reluctance); });
         }
         try_other_queues();
         const std::int64_t bound = lower_bound_ns(work_, urgency_, costs_);
@@ -42,7 +42,12 @@ public:
     }
 
 private:
-    void consider(const ItemSchedule& schedule) {
+    /// Takes the schedule that `make` gives where it is better. The best one has had all items from the start, so that
+    /// keeping another takes no memory that would have to outlive the scope.
+    template <typename Make>
+    void consider(Make&& make) {
+        const ScratchScope scope;
+        const ItemSchedule schedule = make();
         if (makespan_ns(work_, schedule, costs_) > best_.score.makespan_ns) {
             return; // the judge can only find it longer
         }
@@ -61,7 +66,7 @@ private:
     // ---- other queues, with the order of the list schedule ----
 
     void try_other_queues() {
-        std::vector<std::uint32_t> free;
+        Scratch<std::uint32_t> free;
         std::uint64_t combinations = 1;
         constexpr std::uint64_t few = 1'024;
         for (std::uint32_t item = 0; item < work_.pass.size(); ++item) {
@@ -88,7 +93,7 @@ private:
                 for (QueueMask rest = work_.allowed[item] & ~here; rest != 0; rest &= rest - 1) {
                     fixed.allowed[item] = rest & (~rest + 1);
                     if (step(work_.pass.size())) {
-                        consider(list_schedule(fixed, urgency_, costs_));
+                        consider([&] { return list_schedule(fixed, urgency_, costs_); });
                     }
                 }
                 fixed.allowed[item] = here;
@@ -96,10 +101,10 @@ private:
             better = best_.score < before;
         }
     }
-    void try_all(Work& fixed, const std::vector<std::uint32_t>& free, std::size_t at) {
+    void try_all(Work& fixed, const Scratch<std::uint32_t>& free, std::size_t at) {
         if (at == free.size()) {
             if (step(work_.pass.size())) {
-                consider(list_schedule(fixed, urgency_, costs_));
+                consider([&] { return list_schedule(fixed, urgency_, costs_); });
             }
             return;
         }
@@ -132,6 +137,8 @@ private:
         queue_.assign(count, none);
         free_at_.assign(work_.queue_count, 0);
         sequence_ = {};
+        sequence_.items.reserve(count);
+        sequence_.queue.reserve(count);
         extend();
     }
 
@@ -186,7 +193,7 @@ private:
 
     void extend() {
         if (sequence_.items.size() == work_.pass.size()) {
-            consider(merged(work_, sequence_));
+            consider([&] { return merged(work_, sequence_); });
             return;
         }
         for (const std::uint32_t item : urgency_.items) {
@@ -245,16 +252,16 @@ private:
     bool ties_matter_ = false;
 
     // Of the branch. Times are optimistic.
-    std::vector<std::int64_t> tail_;       ///< by item: the longest way from its end to the frame's end
-    std::vector<std::int64_t> bound_to_;   ///< by queue: work that is placed there or can run nowhere else
-    std::vector<std::int64_t> waiting_on_; ///< by queue: unplaced work that can run nowhere else
-    std::int64_t remaining_ = 0;           ///< unplaced work
+    Scratch<std::int64_t> tail_;       ///< by item: the longest way from its end to the frame's end
+    Scratch<std::int64_t> bound_to_;   ///< by queue: work that is placed there or can run nowhere else
+    Scratch<std::int64_t> waiting_on_; ///< by queue: unplaced work that can run nowhere else
+    std::int64_t remaining_ = 0;       ///< unplaced work
     std::int64_t total_ = 0;
     QueueMask usable_ = 0;
-    std::vector<std::uint8_t> placed_;
-    std::vector<std::int64_t> end_;
-    std::vector<std::uint32_t> queue_;
-    std::vector<std::int64_t> free_at_;
+    Scratch<std::uint8_t> placed_;
+    Scratch<std::int64_t> end_;
+    Scratch<std::uint32_t> queue_;
+    Scratch<std::int64_t> free_at_;
     ItemSchedule sequence_;
 };
 

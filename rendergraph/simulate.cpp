@@ -135,6 +135,7 @@ std::vector<MemorySample> memory_of(const GraphDesc& graph, const Plan& plan, co
 } // namespace
 
 Timeline simulate(const GraphDesc& graph, const Plan& plan, const Costs& costs) {
+    const ScratchScope scope;
     const std::int64_t cross_ns = cross_queue_within_limits(costs);
     const QueueProgram program = program_of(plan, costs);
     const QueueRun run = run_queues(program, costs);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rendergraph/plan.hpp"
+#include "rendergraph/scratch.hpp"
 
 namespace tyndall::rg::stages {
 
@@ -19,14 +20,14 @@ struct CellRange {
 };
 struct ResourceCells {
     std::uint32_t mips = 1;
-    std::uint32_t layers = 1;                  ///< buffers: number of intervals
-    bool whole = true;                         ///< one cell stands for everything
-    std::vector<VkDeviceSize> boundaries = {}; ///< buffers cut into intervals: layers + 1 offsets
+    std::uint32_t layers = 1;              ///< buffers: number of intervals
+    bool whole = true;                     ///< one cell stands for everything
+    Scratch<VkDeviceSize> boundaries = {}; ///< buffers cut into intervals: layers + 1 offsets
     [[nodiscard]] std::uint32_t count() const { return whole ? 1 : mips * layers; }
 };
 struct Cells {
-    std::vector<ResourceCells> of_resource;
-    std::vector<CellRange> of_access;
+    Scratch<ResourceCells> of_resource;
+    Scratch<CellRange> of_access;
 };
 /// Calls `f(cell index)` for every cell of the range.
 template <typename F>
@@ -42,7 +43,7 @@ void for_each_cell(const ResourceCells& resource, const CellRange& range, F&& f)
     }
 }
 /// The cells as few ranges: runs of layers, then equal runs of neighbouring mips. `cells` ascending.
-[[nodiscard]] std::vector<CellRange> as_rectangles(const ResourceCells& resource, std::span<const std::uint32_t> cells);
+[[nodiscard]] Scratch<CellRange> as_rectangles(const ResourceCells& resource, std::span<const std::uint32_t> cells);
 /// Requires ranges inside their resources (validate). O(accesses log accesses).
 [[nodiscard]] Cells cut_into_cells(const GraphDesc& graph);
 
@@ -55,14 +56,14 @@ struct Edge {
     Hazard hazard = Hazard::read_after_write;
 };
 struct Flow {
-    std::vector<Edge> edges; ///< sorted by (to, from), unique per (to, from, hazard is read_after_write)
-    std::vector<std::uint32_t> last_writers; ///< passes whose writes stand at the frame's end, of imports and histories
-    std::vector<std::uint32_t> last_writer_resource; ///< the resource, parallel to last_writers
-    Diagnostics errors;                              ///< reads of something never written, two writers of one version
+    Scratch<Edge> edges;                 ///< sorted by (to, from), unique per (to, from, hazard is read_after_write)
+    Scratch<std::uint32_t> last_writers; ///< passes whose writes stand at the frame's end, of imports and histories
+    Scratch<std::uint32_t> last_writer_resource; ///< the resource, parallel to last_writers
+    Diagnostics errors;                          ///< reads of something never written, two writers of one version
 };
 /// Follows versions, not the order of declaration. With `kept`, passes that it does not mark do not exist, so that what
 /// was ordered through a culled pass is ordered directly. O(accesses x cells of each).
-[[nodiscard]] Flow follow_versions(const GraphDesc& graph, const Cells& cells, const std::vector<bool>* kept = nullptr);
+[[nodiscard]] Flow follow_versions(const GraphDesc& graph, const Cells& cells, const Scratch<bool>* kept = nullptr);
 
 // ---- validate ----------------------------------------------------------------------------------------------------
 
@@ -72,8 +73,8 @@ struct Flow {
 // ---- order -------------------------------------------------------------------------------------------------------
 
 struct Order {
-    std::vector<std::uint32_t> passes; ///< all of them, topological; ties by declaration
-    Diagnostics errors;                ///< cycles
+    Scratch<std::uint32_t> passes; ///< all of them, topological; ties by declaration
+    Diagnostics errors;            ///< cycles
 };
 /// Kahn's algorithm with the smallest declaration index first. O((passes + edges) log passes).
 [[nodiscard]] Order order_passes(const GraphDesc& graph, const Flow& flow);
@@ -81,9 +82,9 @@ struct Order {
 // ---- cull --------------------------------------------------------------------------------------------------------
 
 struct Kept {
-    std::vector<bool> pass; ///< by pass
-    std::vector<KeepReason> reason;
-    std::vector<std::uint32_t> keeps_for;
+    Scratch<bool> pass; ///< by pass
+    Scratch<KeepReason> reason;
+    Scratch<std::uint32_t> keeps_for;
     std::vector<CulledPass> culled_passes;
     std::vector<CulledResource> culled_resources;
 };
@@ -105,9 +106,9 @@ struct Use {
 };
 /// Which queue each kept pass runs on, in which order, and why: what assign.hpp decides.
 struct Assignment {
-    std::vector<std::uint32_t> order; ///< kept passes in submission order, which respects the data flow
-    std::vector<std::uint32_t> queue; ///< parallel to order
-    std::vector<QueueReason> reason;  ///< parallel to order
+    Scratch<std::uint32_t> order; ///< kept passes in submission order, which respects the data flow
+    Scratch<std::uint32_t> queue; ///< parallel to order
+    Scratch<QueueReason> reason;  ///< parallel to order
 };
 using Uses = std::span<const Use* const>;
 /// The uses of one resource, cell by cell, in slot order. Its memory serves one resource after the other.
@@ -120,9 +121,9 @@ public:
     }
 
 private:
-    std::vector<const Use*> uses_;
-    std::vector<std::uint32_t> first_; ///< cells + 1 entries into uses_
-    std::vector<std::uint32_t> next_;
+    Scratch<const Use*> uses_;
+    Scratch<std::uint32_t> first_; ///< cells + 1 entries into uses_
+    Scratch<std::uint32_t> next_;
 };
 
 struct QueueWait {
@@ -130,16 +131,16 @@ struct QueueWait {
     std::uint32_t producer = 0; ///< slot waited for
 };
 struct Schedule {
-    std::vector<std::uint32_t> order;    ///< kept passes in submission order
-    std::vector<std::uint32_t> slot_of;  ///< by pass, `none` if culled
-    std::vector<std::uint32_t> queue;    ///< by slot
-    std::vector<std::uint32_t> position; ///< by slot: place on its queue
-    std::vector<QueueReason> queue_reason;
-    std::vector<Use> uses;                ///< grouped by resource, in slot order
-    std::vector<std::uint32_t> first_use; ///< by resource, resources + 1 entries into `uses`
-    std::vector<bool> concurrent;         ///< by resource: shared by families at once
-    std::vector<QueueWait> waits;         ///< transitively reduced, in slot order
-    std::vector<std::uint32_t> clocks;    ///< slots x queues: passes of each queue that happen before or at the slot
+    Scratch<std::uint32_t> order;    ///< kept passes in submission order
+    Scratch<std::uint32_t> slot_of;  ///< by pass, `none` if culled
+    Scratch<std::uint32_t> queue;    ///< by slot
+    Scratch<std::uint32_t> position; ///< by slot: place on its queue
+    Scratch<QueueReason> queue_reason;
+    Scratch<Use> uses;                ///< grouped by resource, in slot order
+    Scratch<std::uint32_t> first_use; ///< by resource, resources + 1 entries into `uses`
+    Scratch<bool> concurrent;         ///< by resource: shared by families at once
+    Scratch<QueueWait> waits;         ///< transitively reduced, in slot order
+    Scratch<std::uint32_t> clocks;    ///< slots x queues: passes of each queue that happen before or at the slot
     std::uint32_t queue_count = 1;
 
     [[nodiscard]] bool happens_before(std::uint32_t slot_a, std::uint32_t slot_b) const {
@@ -157,10 +158,10 @@ struct Memory {
     std::vector<Placement> placements;
     std::vector<Heap> heaps;
     VkDeviceSize unaliased_bytes = 0;
-    VkDeviceSize bound_bytes = 0;                  ///< no packing is smaller
-    std::vector<std::uint32_t> owners_before;      ///< of one resource after the other
-    std::vector<std::uint32_t> first_owner_before; ///< by resource, into owners_before
-    std::vector<std::uint32_t> owner_before_count; ///< by resource
+    VkDeviceSize bound_bytes = 0;              ///< no packing is smaller
+    Scratch<std::uint32_t> owners_before;      ///< of one resource after the other
+    Scratch<std::uint32_t> first_owner_before; ///< by resource, into owners_before
+    Scratch<std::uint32_t> owner_before_count; ///< by resource
 
     /// Those that lay in a resource's bytes last. All their accesses happen before its own, and theirs after those of
     /// whoever lay there before them.
@@ -176,9 +177,9 @@ struct Memory {
 // ---- batch -------------------------------------------------------------------------------------------------------
 
 struct Batches {
-    std::vector<Batch> batches;          ///< passes index `order`
-    std::vector<std::uint32_t> order;    ///< slots in submission order: batch by batch
-    std::vector<std::uint32_t> batch_of; ///< by slot
+    std::vector<Batch> batches;      ///< passes index `order`
+    Scratch<std::uint32_t> order;    ///< slots in submission order: batch by batch
+    Scratch<std::uint32_t> batch_of; ///< by slot
 };
 /// A batch ends after a pass that another queue waits for and begins before a pass that waits.
 [[nodiscard]] Batches make_batches(const GraphDesc& graph, const Schedule& schedule);
@@ -186,11 +187,11 @@ struct Batches {
 // ---- synchronise -------------------------------------------------------------------------------------------------
 
 struct Synchronised {
-    std::vector<Dependency> dependencies;     ///< grouped by the consumer's slot, exits last
-    std::vector<std::uint32_t> first_of_slot; ///< slots + 1 entries
+    std::vector<Dependency> dependencies; ///< grouped by the consumer's slot, exits last
+    Scratch<std::uint32_t> first_of_slot; ///< slots + 1 entries
     std::uint32_t first_exit = 0;
-    std::vector<std::vector<std::uint32_t>> releases; ///< by batch, into dependencies
-    std::vector<VkImageLayout> resting_layout;        ///< by resource, for histories
+    Scratch<std::vector<std::uint32_t>> releases; ///< by batch, into dependencies
+    std::vector<VkImageLayout> resting_layout;    ///< by resource, for histories
 };
 /// Walks each resource's uses in schedule order, cell by cell; reads that want the same layout share one dependency.
 [[nodiscard]] Synchronised synchronise(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells,
@@ -200,8 +201,8 @@ struct Synchronised {
 // ---- attachments -------------------------------------------------------------------------------------------------
 
 struct Attachments {
-    std::vector<AttachmentOps> operations;    ///< grouped by slot
-    std::vector<std::uint32_t> first_of_slot; ///< slots + 1 entries
+    std::vector<AttachmentOps> operations; ///< grouped by slot
+    Scratch<std::uint32_t> first_of_slot;  ///< slots + 1 entries
 };
 /// Load follows from the verb, store from later uses: what nobody reads is not stored. O(uses x cells of each).
 [[nodiscard]] Attachments choose_attachment_operations(const GraphDesc& graph, const Cells& cells,

@@ -406,10 +406,10 @@ private:
     bool full_barriers_;
     std::uint32_t exit_slot_;
     Synchronised out_;
-    std::vector<CellDependency> all_;
+    Scratch<CellDependency> all_;
     // Of the resource at hand; members, so that their memory serves all resources.
-    std::vector<CellDependency> found_;
-    std::vector<const Use*> entry_uses_;
+    Scratch<CellDependency> found_;
+    Scratch<const Use*> entry_uses_;
     CellUses cell_uses_;
 };
 

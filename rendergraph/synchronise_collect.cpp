@@ -7,13 +7,13 @@ namespace tyndall::rg::stages {
 namespace {
 
 /// Indices into `found` by slot, those of one slot as they were found.
-std::vector<std::uint32_t> by_slot(std::span<const CellDependency> found, std::uint32_t exit_slot) {
-    std::vector<std::uint32_t> next(exit_slot + 2, 0);
+Scratch<std::uint32_t> by_slot(std::span<const CellDependency> found, std::uint32_t exit_slot) {
+    Scratch<std::uint32_t> next(exit_slot + 2, 0);
     for (const CellDependency& one : found) {
         ++next[one.slot + 1];
     }
     std::partial_sum(next.begin(), next.end(), next.begin());
-    std::vector<std::uint32_t> order(found.size());
+    Scratch<std::uint32_t> order(found.size());
     for (std::uint32_t i = 0; i < found.size(); ++i) {
         order[next[found[i].slot]++] = i;
     }
@@ -23,7 +23,7 @@ std::vector<std::uint32_t> by_slot(std::span<const CellDependency> found, std::u
 } // namespace
 
 void collect(std::span<const CellDependency> found, std::uint32_t exit_slot, Synchronised& out) {
-    const std::vector<std::uint32_t> order = by_slot(found, exit_slot);
+    const Scratch<std::uint32_t> order = by_slot(found, exit_slot);
     out.dependencies.reserve(found.size());
     out.first_of_slot.assign(exit_slot + 1, 0);
     const auto add = [&](const CellDependency& one) {

@@ -55,8 +55,8 @@ struct CellDependency {
     Dependency dependency;
     std::uint32_t slot; ///< of the consumer, the number of slots for exits
     std::uint32_t release_batch = none;
-    bool only_at_release = false;     ///< recorded at the end of release_batch and nowhere else
-    std::vector<std::uint32_t> cells; ///< empty: the whole resource
+    bool only_at_release = false; ///< recorded at the end of release_batch and nowhere else
+    Scratch<std::uint32_t> cells; ///< empty: the whole resource
 };
 
 /// Fills the dependencies of `out`, whose `releases` has a list for each batch, in the order in which a frame records

@@ -29,7 +29,7 @@ std::string_view verb(Direction direction) {
 template <typename T, typename F>
 void for_each_repeated(const std::vector<T>& items, F&& f) {
     const std::size_t mask = std::bit_ceil(2 * items.size() + 1) - 1;
-    std::vector<std::uint32_t> table(mask + 1, none);
+    Scratch<std::uint32_t> table(mask + 1, none);
     for (std::uint32_t i = 0; i < items.size(); ++i) {
         std::size_t at = std::hash<std::string_view>{}(items[i].name) & mask;
         while (table[at] != none && items[table[at]].name != items[i].name) {
@@ -338,7 +338,7 @@ private:
     }
 
     void imports() {
-        std::vector<const AccessDesc*> writer(graph_.resources.size(), nullptr);
+        Scratch<const AccessDesc*> writer(graph_.resources.size(), nullptr);
         for (const AccessDesc& access : graph_.accesses) {
             if (is_write(access.direction) && writer[access.resource] == nullptr) {
                 writer[access.resource] = &access;
