@@ -116,7 +116,7 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
         decide(work, choices, options, costs,
                previous != nullptr ? previous_schedule(work, topology, passes_hash, *previous) : ItemSchedule{});
     const Schedule sched = schedule_what_pays(graph, topology, cells, flow, work, choices, costs, decided);
-    Memory placed = place(graph, topology, sched, memory, options.aliasing);
+    Memory placed = place(graph, topology, sched, memory, options, previous);
     Batches batches = make_batches(graph, sched);
     Synchronised sync = synchronise(graph, topology, cells, sched, placed, batches, options.full_barriers);
 

@@ -10,7 +10,7 @@ namespace tyndall::rg {
 
 /// Compiles `graph` for `topology`. The same input gives a byte-identical plan everywhere. On failure, all the mistakes
 /// of the graph together, never an empty list. Passes whose queue is free are scheduled by `costs`; `previous` is the
-/// plan of the frame before (or of refine_schedule), whose schedule stays where it fits and no other gains enough.
+/// plan of the frame before (or of refine), whose schedule and memory stay where they fit and no other gains enough.
 [[nodiscard]] tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopology& topology,
                                                       const MemoryRequirements& memory,
                                                       const CompileOptions& options = {}, const Costs& costs = {},

@@ -3,6 +3,8 @@
 // bytes overlap have all accesses of one before all accesses of the other.
 // O(uses x log + conflicts x log): see memory_types.hpp.
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 #include "rendergraph/memory_types.hpp"
 
@@ -57,6 +59,36 @@ Packing pack_without_sharing(std::span<const Block> blocks, std::uint32_t heap_c
         packing.offset_bytes[i] = align_up(heap_bytes, blocks[i].alignment);
         heap_bytes = packing.offset_bytes[i] + blocks[i].size_bytes;
     }
+    return packing;
+}
+
+/// Where the previous plan had the blocks, if that is still a packing of them: each is there with the same size, and no
+/// two that are in conflict overlap. O(conflicts).
+std::optional<Packing> packing_of(const Plan& previous, std::span<const Block> blocks, const Conflicts& conflicts,
+                                  std::uint32_t heap_count) {
+    Packing packing{Scratch<VkDeviceSize>(blocks.size()), Scratch<VkDeviceSize>(heap_count, 0)};
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        const Block& block = blocks[i];
+        if (block.resource >= previous.placements.size()) {
+            return std::nullopt;
+        }
+        const Placement& placement = previous.placements[block.resource];
+        const VkDeviceSize offset = placement.offset_bytes;
+        if (placement.kind != PlacementKind::heap || placement.heap != block.heap ||
+            placement.size_bytes != block.size_bytes || offset != align_up(offset, block.alignment)) {
+            return std::nullopt;
+        }
+        for (const std::uint32_t other : conflicts.of(i)) {
+            if (other < i && offset < packing.offset_bytes[other] + blocks[other].size_bytes &&
+                packing.offset_bytes[other] < offset + block.size_bytes) {
+                return std::nullopt;
+            }
+        }
+        packing.offset_bytes[i] = offset;
+        VkDeviceSize& heap_bytes = packing.heap_bytes[block.heap];
+        heap_bytes = std::max(heap_bytes, offset + block.size_bytes);
+    }
+    packing.total_bytes = std::accumulate(packing.heap_bytes.begin(), packing.heap_bytes.end(), VkDeviceSize{0});
     return packing;
 }
 
@@ -136,7 +168,7 @@ VkDeviceSize largest_live_set(const Schedule& schedule, std::span<const Block> b
 } // namespace
 
 Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedule& schedule,
-             const MemoryRequirements& requirements, bool aliasing) {
+             const MemoryRequirements& requirements, const CompileOptions& options, const Plan* previous) {
     const auto count = static_cast<std::uint32_t>(graph.resources.size());
     Memory memory;
     memory.placements.resize(count);
@@ -211,8 +243,11 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     const std::size_t tries = std::clamp<std::size_t>(blocks.size() / 8, 2, 16); // cheap beside the packing
     memory.bound_bytes =
         std::max(exclusive_bytes(blocks, conflicts, heap_count, tries), largest_live_set(schedule, blocks, lives));
-    const Packing packing =
-        aliasing ? pack(blocks, conflicts, heap_count, memory.bound_bytes) : pack_without_sharing(blocks, heap_count);
+    const std::optional<Packing> kept =
+        previous != nullptr ? packing_of(*previous, blocks, conflicts, heap_count) : std::nullopt;
+    const Packing packing = options.aliasing ? pack(blocks, conflicts, heap_count, memory.bound_bytes, options.effort,
+                                                    kept ? &*kept : nullptr)
+                                             : pack_without_sharing(blocks, heap_count);
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         Placement& placement = memory.placements[blocks[i].resource];
         placement.heap = blocks[i].heap;

@@ -95,7 +95,10 @@ std::size_t pack_in_order(std::span<const Block> blocks, const Conflicts& confli
 } // namespace
 
 Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
-             VkDeviceSize bound_bytes) {
+             VkDeviceSize bound_bytes, Effort effort, const Packing* kept) {
+    if (kept != nullptr && kept->total_bytes <= bound_bytes) {
+        return *kept;
+    }
     Packing best{Scratch<VkDeviceSize>(blocks.size()), Scratch<VkDeviceSize>(heap_count)};
     Packing other = best;
     Scratch<std::uint32_t> as_they_come(blocks.size()); // by first slot
@@ -115,6 +118,9 @@ Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uin
     const auto life = [](const Block& block) { return block.last_slot - block.first_slot + 1; };
     Scratch<std::uint32_t> order = descending_by([](const Block& block) { return block.size_bytes; });
     pack_in_order(blocks, conflicts, order, smallest_gap, unplaced, best);
+    if (kept != nullptr && kept->total_bytes <= best.total_bytes) {
+        best = *kept;
+    }
     if (best.total_bytes <= bound_bytes) {
         return best;
     }
@@ -130,14 +136,17 @@ Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uin
             }
         }
     };
-    if (blocks.size() <= most_exact_blocks) {
+    if (effort == Effort::thorough && blocks.size() <= most_exact_blocks) {
         // Some order is optimal: that of the offsets in an optimal packing.
         do {
             improve(as_they_come, 1);
         } while (std::next_permutation(as_they_come.begin(), as_they_come.end()));
         return best;
     }
-    const std::size_t rounds = std::clamp<std::size_t>(most_steps / std::max<std::size_t>(blocks.size(), 1), 1, 64);
+    const std::size_t rounds =
+        effort == Effort::thorough
+            ? std::clamp<std::size_t>(most_steps / std::max<std::size_t>(blocks.size(), 1), 2, 64)
+            : 2;
     improve(descending_by(life), rounds);
     improve(descending_by([&](const Block& block) { return block.size_bytes * life(block); }), rounds);
     improve(as_they_come, rounds);

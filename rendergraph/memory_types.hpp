@@ -69,10 +69,11 @@ struct Packing {
 /// Greedy orders, of which the lowest total is kept, the first of equals: by size, descending, each into the smallest
 /// gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, by first slot,
 /// and by size again. From each of these last four the block with which the best total is reached goes to the front and
-/// the order is tried again, a bounded number of times. Up to seven blocks all orders are
-/// tried, which is optimal. Ends at `bound_bytes`, below which there is nothing. O(orders x
-/// conflicts x log), the number of tries falling with the number of blocks.
+/// the order is tried again, once or, with thorough effort, a bounded number of times. Up to seven blocks thorough
+/// effort tries all orders, which is optimal. Ends at `bound_bytes`, below which there is nothing. `kept`, if given, is
+/// a valid packing that stays unless another is smaller. O(orders x conflicts x log), the number of tries falling with
+/// the number of blocks.
 [[nodiscard]] Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
-                           VkDeviceSize bound_bytes);
+                           VkDeviceSize bound_bytes, Effort effort, const Packing* kept = nullptr);
 
 } // namespace tyndall::rg::stages

@@ -37,13 +37,19 @@ struct MemoryRequirements {
 /// buffers, 4 KiB for images.
 [[nodiscard]] MemoryRequirements estimate_memory(const GraphDesc& graph);
 
-/// Debug switches; each turns off one thing the compiler does.
+enum class Effort : std::uint8_t {
+    quick,    ///< what a frame has time for
+    thorough, ///< for a thread beside the frame: see refine.hpp
+};
+
+/// Debug switches, each of which turns off one thing the compiler does; and how hard it tries.
 struct CompileOptions {
     bool culling = true;
     bool aliasing = true;
-    bool async = true;          ///< false: everything on the graphics queue
-    bool reordering = true;     ///< false: each queue keeps the order of declaration where the data allow it
-    bool full_barriers = false; ///< true: every dependency waits for all commands and all memory
+    bool async = true;             ///< false: everything on the graphics queue
+    bool reordering = true;        ///< false: each queue keeps the order of declaration where the data allow it
+    bool full_barriers = false;    ///< true: every dependency waits for all commands and all memory
+    Effort effort = Effort::quick; ///< of placing transients: the rounds in which greedy packings are improved
 };
 
 // ---- why ---------------------------------------------------------------------------------------------------------

@@ -48,4 +48,9 @@ tl::expected<const Plan*, Diagnostics> PlanCache::compile(const GraphDesc& graph
     return &plan_;
 }
 
+void PlanCache::prefer(Plan plan) {
+    plan_ = std::move(plan);
+    hash_ = {};
+}
+
 } // namespace tyndall::rg

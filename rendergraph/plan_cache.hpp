@@ -29,6 +29,9 @@ public:
                                                                  const CompileOptions& options = {},
                                                                  const Costs& costs = {});
 
+    /// Takes a better plan of the last frame, as refine() makes it: the next call compiles with it as the plan before.
+    void prefer(Plan plan);
+
     /// How many calls made a new plan.
     [[nodiscard]] std::uint64_t compiled() const { return compiled_; }
     /// What shadow compiles found: a plan returned that compiling would not have given. It is a mistake of this

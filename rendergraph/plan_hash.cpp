@@ -173,10 +173,10 @@ void add(Hasher& hash, const MemoryRequirements& memory) {
 }
 
 void add(Hasher& hash, const CompileOptions& options) {
-    const auto& [culling, aliasing, async, reordering, full_barriers] = options;
+    const auto& [culling, aliasing, async, reordering, full_barriers, effort] = options;
     hash.add((culling ? 1U : 0U) | (aliasing ? 2U : 0U) | (async ? 4U : 0U) | (reordering ? 8U : 0U) |
                  (full_barriers ? 16U : 0U),
-             0);
+             static_cast<std::uint32_t>(effort));
 }
 
 void add(Hasher& hash, const Costs& costs) {

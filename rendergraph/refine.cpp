@@ -65,9 +65,10 @@ Plan as_previous(const Work& work, const ItemSchedule& schedule, const Plan& lik
 
 } // namespace
 
-tl::expected<Refined, Diagnostics> refine_schedule(const GraphDesc& graph, const QueueTopology& topology,
-                                                   const MemoryRequirements& memory, const CompileOptions& options,
-                                                   const Costs& costs, const Plan* previous, std::uint64_t most_steps) {
+tl::expected<Refined, Diagnostics> refine(const GraphDesc& graph, const QueueTopology& topology,
+                                          const MemoryRequirements& memory, CompileOptions options, const Costs& costs,
+                                          const Plan* previous, std::uint64_t most_steps) {
+    options.effort = Effort::thorough;
     const ScratchScope scope;
     tl::expected<Plan, Diagnostics> compiled = compile(graph, topology, memory, options, costs, previous);
     if (!compiled) {
@@ -109,6 +110,7 @@ tl::expected<Refined, Diagnostics> refine_schedule(const GraphDesc& graph, const
     if (current_ns - found.score.makespan_ns >= least_gain_ns) {
         const Plan better = as_previous(work, found.schedule, refined.plan);
         refined.plan = *compile(graph, topology, memory, options, costs, &better);
+        refined.plan.decision.kept_by_hysteresis = false; // it is the new one
     }
     return refined;
 }

@@ -170,9 +170,10 @@ struct Memory {
     }
 };
 /// Two resources may share bytes only if every access of one happens before every access of the other in the schedule's
-/// partial order. The lowest of several greedy packings.
+/// partial order. The lowest of several greedy packings, and of the previous plan's where that is still one, so that
+/// memory does not move without need. `previous` may be null.
 [[nodiscard]] Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedule& schedule,
-                           const MemoryRequirements& requirements, bool aliasing);
+                           const MemoryRequirements& requirements, const CompileOptions& options, const Plan* previous);
 
 // ---- batch -------------------------------------------------------------------------------------------------------
 

@@ -13,6 +13,9 @@ namespace {
 using Result = tl::expected<void, engine::Error>;
 
 constexpr std::uint32_t frames_in_flight = 2;
+/// Where measured durations decide: frames on one queue, and searches for a better plan.
+constexpr std::uint32_t frames_between_calibrations = 32;
+constexpr std::uint64_t frames_between_searches = 32;
 
 const rg::ImportDesc read_by_host = {
     .has_final = true, .final_stages = VK_PIPELINE_STAGE_2_HOST_BIT, .final_access = VK_ACCESS_2_HOST_READ_BIT};
@@ -85,6 +88,9 @@ Result FrameLoop::make(engine::Scene scene, FrameLoopInfo info) {
     }
     executor_.emplace(std::move(*executor));
     topology_ = topology_for(*executor_, info.two_queues);
+    if (info.two_queues && !info.ask_for_async && profile_) {
+        durations_ = rg::Durations({.calibrate_every = frames_between_calibrations});
+    }
     return {};
 }
 
@@ -150,6 +156,52 @@ Result FrameLoop::declare_reads(rg::GraphBuilder& graph, rg::Blackboard& blackbo
     return {};
 }
 
+/// The plan of this frame. A better one is looked for while the frame runs and taken over by the next, so that the same
+/// frames get the same plans however fast the search was.
+Result FrameLoop::make_plan() {
+    if (refining_.valid()) {
+        if (auto refined = refining_.get()) {
+            plans_.prefer(std::move(refined->plan));
+        }
+    }
+    const rg::MemoryRequirements memory = executor_->memory_requirements(declared_.desc);
+    const rg::Costs costs = durations_.costs(declared_.desc);
+    const auto failed = [](const rg::Diagnostics& mistakes) {
+        return tl::unexpected(engine::Error{"The frame does not compile: " + rg::to_text(mistakes)});
+    };
+    const std::uint64_t compiled = plans_.compiled();
+    if (durations_.calibration_due()) {
+        auto alone = rg::compile(declared_.desc, topology_, memory, {.async = false}, costs);
+        if (!alone) {
+            return failed(alone.error());
+        }
+        calibration_plan_ = std::move(*alone);
+        plan_ = &calibration_plan_;
+    } else {
+        auto plan = plans_.compile(declared_.desc, topology_, memory, {}, costs);
+        if (!plan) {
+            return failed(plan.error());
+        }
+        plan_ = *plan;
+        if (plans_.compiled() == compiled) {
+            return {};
+        }
+        if (plan_->passes_hash != refined_hash_ || frame_index_ - refined_frame_ >= frames_between_searches) {
+            refined_hash_ = plan_->passes_hash;
+            refined_frame_ = frame_index_;
+            refining_ = std::async(std::launch::async,
+                                   [graph = declared_.desc, queues = topology_, memory, costs, before = *plan_] {
+                                       return rg::refine(graph, queues, memory, {}, costs, &before);
+                                   });
+        }
+    }
+    // Every new plan, in every build: the proof takes microseconds.
+    if (const std::vector<rg::Violation> violations = rg::verify(declared_.desc, *plan_); !violations.empty()) {
+        return tl::unexpected(engine::Error{"The plan is not free of races: " + violations.front().message});
+    }
+    return {};
+}
+
 Result FrameLoop::run(const FrameWishes& wishes) {
     if (auto ready = executor_->wait_for_slot(); !ready) {
         return tl::unexpected(engine::Error{ready.error().message});
@@ -177,22 +229,15 @@ Result FrameLoop::run(const FrameWishes& wishes) {
         return tl::unexpected(*glue_->error());
     }
     declared_ = graph.finish();
-    auto plan = rg::compile(declared_.desc, topology_, executor_->memory_requirements(declared_.desc), {},
-                            durations_.costs(declared_.desc), &plan_);
-    if (!plan) {
-        return tl::unexpected(engine::Error{"The frame does not compile: " + rg::to_text(plan.error())});
-    }
-    plan_ = std::move(*plan);
-    // Every plan, in every build: the proof takes microseconds.
-    if (const std::vector<rg::Violation> violations = rg::verify(declared_.desc, plan_); !violations.empty()) {
-        return tl::unexpected(engine::Error{"The plan is not free of races: " + violations.front().message});
+    if (Result planned = make_plan(); !planned) {
+        return planned;
     }
     std::vector<rg::ImportBinding> bindings(renderer_->bindings().begin(), renderer_->bindings().end());
     bindings.insert(bindings.end(), read_bindings_.begin(), read_bindings_.end());
     if (const engine::FeatureImports* imports = blackboard.find<engine::FeatureImports>()) {
         bindings.insert(bindings.end(), imports->bindings.begin(), imports->bindings.end());
     }
-    auto submitted = executor_->submit(declared_.desc, plan_, declared_.callbacks, bindings);
+    auto submitted = executor_->submit(declared_.desc, *plan_, declared_.callbacks, bindings);
     if (!submitted) {
         renderer_->forget_cached_frames();
         return tl::unexpected(engine::Error{submitted.error().message});
@@ -204,7 +249,7 @@ Result FrameLoop::run(const FrameWishes& wishes) {
             return waited;
         }
         timings_ = executor_->timings();
-        durations_.add_frame(declared_.desc, plan_, timings_);
+        durations_.add_frame(declared_.desc, *plan_, timings_);
         take_images(wishes);
     }
     return {};

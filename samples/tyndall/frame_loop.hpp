@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,8 @@
 #include "engine/renderer.hpp"
 #include "rendergraph/durations.hpp"
 #include "rendergraph/executor.hpp"
+#include "rendergraph/plan_cache.hpp"
+#include "rendergraph/refine.hpp"
 #include "samples/tyndall/stage_images.hpp"
 #include "samples/tyndall/volumetrics_glue.hpp"
 
@@ -59,7 +62,7 @@ public:
     [[nodiscard]] const engine::Pixels<std::uint8_t>& picture() const { return picture_; }
     [[nodiscard]] const engine::Pixels<float>& radiance() const { return radiance_; }
     [[nodiscard]] const rg::GraphDesc& graph() const { return declared_.desc; }
-    [[nodiscard]] const rg::Plan& plan() const { return plan_; }
+    [[nodiscard]] const rg::Plan& plan() const { return *plan_; }
     [[nodiscard]] const std::vector<rg::PassTiming>& timings() const { return timings_; }
     /// "left out: what, because why", a line each, by renderer and fog.
     [[nodiscard]] std::string omissions() const;
@@ -73,6 +76,7 @@ private:
     [[nodiscard]] tl::expected<void, engine::Error> copy_to_host(rg::GraphBuilder& graph, const char* name,
                                                                  rg::Image image, engine::Buffer& buffer);
     void take_images(const FrameWishes& wishes);
+    [[nodiscard]] tl::expected<void, engine::Error> make_plan();
 
     const engine::Device* device_;
     std::optional<engine::PipelineCache> cache_;
@@ -86,7 +90,12 @@ private:
     engine::Buffer radiance_buffer_;
     std::vector<rg::ImportBinding> read_bindings_;
     rg::DeclaredGraph declared_;
-    rg::Plan plan_;
+    rg::PlanCache plans_;
+    const rg::Plan* plan_ = nullptr; ///< of the newest frame
+    std::future<tl::expected<rg::Refined, rg::Diagnostics>> refining_;
+    std::uint64_t refined_hash_ = 0;  ///< Plan::passes_hash when the last search began
+    std::uint64_t refined_frame_ = 0; ///< and the frame
+    rg::Plan calibration_plan_;
     rg::Durations durations_;
     std::uint64_t frame_index_ = 0;
     std::uint64_t submitted_ = 0;

@@ -9,6 +9,7 @@
 #include "rendergraph/explain.hpp"
 #include "rendergraph/json.hpp"
 #include "rendergraph/optimality.hpp"
+#include "rendergraph/refine.hpp"
 #include "rendergraph/report.hpp"
 #include "rendergraph/verify.hpp"
 #include "samples/tyndall/arguments.hpp"
@@ -69,6 +70,8 @@ constexpr Switch compile_switches[] = {
 };
 /// Filling transients with garbage is a switch of the executor: a plan is the same with it.
 constexpr const char* poison_switch = "poison";
+/// Takes the plan that a frame has time for.
+constexpr const char* no_refinement_switch = "no-refinement";
 
 /// "compute", or "compute:2" for family 2. A queue of the graphics queue's family can do all that this one can.
 std::optional<rg::QueueInfo> parse_queue(std::string_view text, rg::QueueKind kind, const rg::QueueTopology& own,
@@ -164,22 +167,37 @@ Expected<rg::Plan> plan_for(const ScheduleArguments& arguments, const rg::Frame&
         return std::move(*plan);
     }
     rg::CompileOptions options;
+    bool refined = true;
     for (const std::string& name : arguments.switches) {
         for (const Switch& one : compile_switches) {
             if (name == one.name) {
                 one.turn_off(options);
             }
         }
+        refined = refined && name != no_refinement_switch;
         if (name == poison_switch) {
             std::fprintf(stderr, "note: poison acts when a frame is executed; the plan is the same with it\n");
         }
     }
-    tl::expected<rg::Plan, rg::Diagnostics> plan =
-        rg::compile(frame.graph, frame.topology, rg::estimate_memory(frame.graph), options, frame.costs);
-    if (!plan) {
-        return mistakes_in(arguments.frame, plan.error());
+    const rg::MemoryRequirements memory = rg::estimate_memory(frame.graph);
+    if (!refined) {
+        tl::expected<rg::Plan, rg::Diagnostics> plan =
+            rg::compile(frame.graph, frame.topology, memory, options, frame.costs);
+        if (!plan) {
+            return mistakes_in(arguments.frame, plan.error());
+        }
+        return std::move(*plan);
     }
-    return std::move(*plan);
+    tl::expected<rg::Refined, rg::Diagnostics> better =
+        rg::refine(frame.graph, frame.topology, memory, options, frame.costs);
+    if (!better) {
+        return mistakes_in(arguments.frame, better.error());
+    }
+    if (better->steps > 0) {
+        std::fprintf(stderr, "note: searched %llu steps: %s\n", static_cast<unsigned long long>(better->steps),
+                     better->shortest ? "no schedule is shorter" : "a shorter schedule may exist");
+    }
+    return std::move(better->plan);
 }
 
 Expected<void> check_outputs(const ScheduleArguments& arguments) {
@@ -261,6 +279,7 @@ std::vector<std::string> schedule_switches() {
         names.emplace_back(one.name);
     }
     names.emplace_back(poison_switch);
+    names.emplace_back(no_refinement_switch);
     return names;
 }
 

@@ -38,7 +38,7 @@ TEST(Determinism, EqualInputsGiveEqualBytes) {
             const std::string text = plan_to_json(graph, *plan);
             ASSERT_EQ(text, plan_to_json(graph, *again)) << seed;
             add(digest, text);
-            const auto refined = refine_schedule(graph, queues, estimate_memory(graph), {}, costs, &*plan, 2'000);
+            const auto refined = refine(graph, queues, estimate_memory(graph), {}, costs, &*plan, 2'000);
             add(digest, plan_to_json(graph, refined->plan));
         }
     }

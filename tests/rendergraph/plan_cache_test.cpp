@@ -225,6 +225,7 @@ TEST(PlanCache, EveryChangeThatDecidesAPlanIsNoticed) {
         [](Inputs& in) { in.options.aliasing = false; },
         [](Inputs& in) { in.options.async = false; },
         [](Inputs& in) { in.options.full_barriers = true; },
+        [](Inputs& in) { in.options.effort = Effort::thorough; },
         [](Inputs& in) { in.costs.of_pass[1].mean_ns = 1; },
         [](Inputs& in) { in.costs.of_pass[1].deviation_ns = 1; },
         [](Inputs& in) { in.costs.unknown_pass_ns = 1; },

@@ -184,7 +184,7 @@ TEST(ExactSchedule, EqualsBruteForceOnEveryFrameOfUpToNinePasses) {
         visited += judge.visited;
         most = std::max(most, judge.visited);
         const auto refined =
-            refine_schedule(declared.desc, topology, estimate_memory(declared.desc), {}, costs, nullptr, 10'000'000);
+            refine(declared.desc, topology, estimate_memory(declared.desc), {}, costs, nullptr, 10'000'000);
         ASSERT_TRUE(refined.has_value()) << seed;
         EXPECT_TRUE(refined->shortest) << seed;
         EXPECT_EQ(simulate(declared.desc, refined->plan, costs).makespan_ns, shortest) << seed;
@@ -225,7 +225,7 @@ TEST(ExactSchedule, EqualLengthsGoToTheLowestPeakOfMemory) {
     costs.of_pass.assign(desc.passes.size(), {.mean_ns = 1'000'000});
     const MemoryRequirements memory = estimate_memory(desc);
     const auto listed = compile(desc, two_queues(), memory, {}, costs);
-    const auto refined = refine_schedule(desc, two_queues(), memory, {}, costs);
+    const auto refined = refine(desc, two_queues(), memory, {}, costs);
     const auto peak = [&](const Plan& plan) {
         VkDeviceSize most = 0;
         for (const MemorySample& sample : simulate(desc, plan, costs).memory) {
@@ -266,7 +266,7 @@ TEST(LargeSchedules, MedianNearTheLowerBound) {
             };
             const MemoryRequirements memory = estimate_memory(declared.desc);
             const auto first = compile(declared.desc, two_queues(), memory, {}, costs);
-            const auto better = refine_schedule(declared.desc, two_queues(), memory, {}, costs, &*first, 20'000);
+            const auto better = refine(declared.desc, two_queues(), memory, {}, costs, &*first, 20'000);
             listed.push_back(excess(*first));
             refined.push_back(excess(better->plan));
             ASSERT_LE(refined.back(), listed.back()) << seed;

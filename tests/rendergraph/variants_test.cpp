@@ -135,7 +135,7 @@ TEST_F(Variants, RefiningKeepsTheForm) {
     Costs any_gain = costs(3 * ms / 2);
     any_gain.threshold_ns = 0;
     any_gain.threshold_permille = 0;
-    const auto refined = refine_schedule(declared_.desc, two_queues(), estimate_memory(declared_.desc), {}, any_gain);
+    const auto refined = refine(declared_.desc, two_queues(), estimate_memory(declared_.desc), {}, any_gain);
     ASSERT_TRUE(refined.has_value());
     EXPECT_TRUE(refined->shortest);
     EXPECT_EQ(refined->plan.variants[0].form, 1U);

@@ -124,6 +124,10 @@ TEST_F(Schedule, EachSwitchTurnsOneThingOff) {
     expect_in(alone, "transient memory 197.58 MiB, at least");
     expect_in(schedule({frame, "--switch", "full-barriers"}).output, "all commands (memory read|memory write)");
     EXPECT_NE(schedule({frame, "--switch", "no-reordering"}).output, all);
+    const ToolRun quick = schedule({frame, "--switch", "no-refinement"});
+    EXPECT_NE(quick.output, all);
+    EXPECT_EQ(quick.errors.find("searched"), std::string::npos);
+    expect_in(schedule({frame}).errors, "note: searched 200000 steps: a shorter schedule may exist");
     const ToolRun poison = schedule({frame, "--switch", "poison"});
     EXPECT_EQ(poison.output, all);
     expect_in(poison.errors, "note: poison");
