@@ -26,8 +26,8 @@ rg::Image Renderer::cascade_image(rg::GraphBuilder& graph, bool drawn) {
     if (!cascade_cache_) {
         return graph.create_image("sun cascades", desc);
     }
-    rg::ImportDesc import{
-        .initial_stages = sampling_stages, .initial_access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, .read_only = !drawn};
+    // No stages on the way in: the last use was in an earlier frame, after which the executor orders this one whole.
+    rg::ImportDesc import{.read_only = !drawn};
     import.initial_layout = cascade_cache_->has_layout ? resting_layout : VK_IMAGE_LAYOUT_UNDEFINED;
     if (drawn) {
         import.has_final = true;

@@ -70,10 +70,11 @@ enum class ResourceLifetime : std::uint8_t {
 
 /// What the host says of an imported resource on the way in, and wants on the way out.
 struct ImportDesc {
-    // On the way in. Stages and access mask of the last use, where it was submitted to the queue of the frame's first
-    // use and nothing else orders it: they become the source of a barrier. 0 where a semaphore, a fence or the order of
-    // the host's own submissions covers it. Stages of another queue need a semaphore, since a barrier reaches one queue
-    // only.
+    // On the way in. Stages and access mask of the last use, where it was submitted to the topology's first queue and
+    // nothing else orders it: they become the source of a barrier, which reaches that queue only, so that all passes
+    // that use the import stay there. 0 where a semaphore or a fence covers it, and where the last use was in a frame
+    // of the same executor, which orders whole frames. The use by another queue needs a semaphore. Of the host stage
+    // every queue knows.
     VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< UNDEFINED: the content may be lost
     VkPipelineStageFlags2 initial_stages = 0;
     VkAccessFlags2 initial_access = 0;

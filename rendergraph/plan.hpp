@@ -68,10 +68,11 @@ enum class QueueReason : std::uint8_t {
     default_graphics,
     asked_for_but_no_such_queue,
     async_switched_off,
-    import_not_shared, ///< it touches an import that other families use too, and that the host does not share
-    forbidden,         ///< the pass may not run on any other queue that could
-    overlap_pays,      ///< there it runs beside other work, and the frame is predicted to be shorter
-    earliest_here,     ///< the frame overlaps, but no other queue is predicted to finish this pass earlier
+    import_ordered_by_queue, ///< it touches an import whose last use only the first queue comes after
+    import_not_shared,       ///< it touches an import that other families use too, and that the host does not share
+    forbidden,               ///< the pass may not run on any other queue that could
+    overlap_pays,            ///< there it runs beside other work, and the frame is predicted to be shorter
+    earliest_here,           ///< the frame overlaps, but no other queue is predicted to finish this pass earlier
 };
 /// Why the frame overlaps, or does not, where nobody asked for a queue.
 enum class DecisionReason : std::uint8_t {

@@ -32,10 +32,12 @@ inline constexpr std::array<std::string_view, 4> keep_words = {"side_effect", "w
                                                                "feeds_kept_pass"};
 inline constexpr std::array<std::string_view, 5> cull_words = {"no_consumer", "consumer_culled", "all_passes_culled",
                                                                "never_used", "other_form"};
-inline constexpr std::array<std::string_view, 9> queue_reason_words = {
-    "only_queue_that_can", "asked_for",         "default_graphics", "asked_for_but_no_such_queue",
-    "async_switched_off",  "import_not_shared", "forbidden",        "overlap_pays",
-    "earliest_here"};
+inline constexpr std::array<std::string_view, 10> queue_reason_words = {
+    "only_queue_that_can", "asked_for",
+    "default_graphics",    "asked_for_but_no_such_queue",
+    "async_switched_off",  "import_ordered_by_queue",
+    "import_not_shared",   "forbidden",
+    "overlap_pays",        "earliest_here"};
 inline constexpr std::array<std::string_view, 8> decision_words = {"one_queue",
                                                                    "switched_off",
                                                                    "nothing_async_capable",

@@ -31,6 +31,22 @@ Choice asked_queue(const PassDesc& pass, const QueueTopology& topology, bool asy
     return {0, QueueReason::asked_for_but_no_such_queue};
 }
 
+/// Only the first queue comes after the import's last use.
+bool ordered_by_queue(const GraphDesc& graph, const ResourceDesc& resource) {
+    if (resource.import == none) {
+        return false;
+    }
+    const ImportDesc& import = graph.imports[resource.import];
+    return !import.waits_semaphore && (import.initial_stages & ~VK_PIPELINE_STAGE_2_HOST_BIT) != 0;
+}
+
+bool touches_import_ordered_by_queue(const GraphDesc& graph, const PassDesc& pass) {
+    const auto begin = graph.accesses.begin() + pass.first_access;
+    return std::any_of(begin, begin + pass.access_count, [&](const AccessDesc& access) {
+        return ordered_by_queue(graph, graph.resources[access.resource]);
+    });
+}
+
 /// An import is EXCLUSIVE unless the host says that it shares it. Its passes then stay in one family: those that asked
 /// for another queue go back to graphics if the import is used elsewhere too. Returns whether anything moved.
 bool keep_unshared_imports_together(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,
@@ -72,6 +88,10 @@ public:
         if (capable == 1) {
             reason = QueueReason::only_queue_that_can;
             return capable;
+        }
+        if (touches_import_ordered_by_queue(graph_, pass)) {
+            reason = QueueReason::import_ordered_by_queue;
+            return 1;
         }
         const QueueMask shared = capable & queues_of_imports(pass);
         if (shared == 1) {
@@ -151,7 +171,10 @@ QueueChoices choose_queues(const GraphDesc& graph, const QueueTopology& topology
         if (desc.kind == PassKind::graphics) {
             choices.reason[pass] = QueueReason::only_queue_that_can;
         } else if (desc.wish != QueueWish::automatic) {
-            const Choice asked = asked_queue(desc, topology, async);
+            Choice asked = asked_queue(desc, topology, async);
+            if (asked.queue != 0 && touches_import_ordered_by_queue(graph, desc)) {
+                asked = {0, QueueReason::import_ordered_by_queue};
+            }
             choices.home[pass] = asked.queue;
             choices.reason[pass] = asked.reason;
             any_asked_away = any_asked_away || asked.queue != 0;

@@ -109,7 +109,10 @@ void Order::source_scope(std::uint32_t queue, StageSet stages, SourceScope& out)
     });
     for_each_stage(stages, [&](std::uint32_t stage) { // submission order, up to the command before this one
         out.ordered[std::size_t{queue} * stage_count + stage] = sequence_[queue] - 1;
-        out.ordered[std::size_t{host_queue()} * stage_count + stage] = sequence_[host_queue()];
+        // What the host did on the device it submitted to the first queue; what it did itself all queues come after.
+        if (queue == 0 || stage == host_stage_number) {
+            out.ordered[std::size_t{host_queue()} * stage_count + stage] = sequence_[host_queue()];
+        }
     });
 }
 

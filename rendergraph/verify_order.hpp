@@ -15,7 +15,8 @@ namespace tyndall::rg::checker {
 using StageSet = std::uint32_t;
 inline constexpr std::uint32_t stage_count = 18;
 inline constexpr StageSet end_of_submission = 1U << 17U; ///< what only a semaphore's signal comes after
-inline constexpr StageSet host_stage = 1U << 15U;
+inline constexpr std::uint32_t host_stage_number = 15;
+inline constexpr StageSet host_stage = 1U << host_stage_number;
 inline constexpr StageSet every_stage = (1U << 17U) - 1;
 [[nodiscard]] StageSet source_stages(VkPipelineStageFlags2 mask);
 [[nodiscard]] StageSet destination_stages(VkPipelineStageFlags2 mask);

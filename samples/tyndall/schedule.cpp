@@ -206,6 +206,10 @@ Expected<void> check_outputs(const ScheduleArguments& arguments) {
         if (kind != ".txt" && kind != ".json" && kind != ".dot" && kind != ".html") {
             return mistake("--out '" + path.string() + "' must end in .txt, .json, .dot or .html");
         }
+        std::error_code error;
+        if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), error)) {
+            return mistake("Cannot write '" + path.string() + "': there is no such folder");
+        }
     }
     return {};
 }

@@ -161,6 +161,53 @@ TEST_F(Scheduling, AnImportThatTheHostDoesNotShareStaysInItsFamily) {
     EXPECT_EQ(queue_of(compiled_with(declared.desc, worth_it), 0), 1U);
 }
 
+TEST_F(Scheduling, AnImportThatOnlyTheFirstQueueComesAfterStaysThere) {
+    for (const QueueWish wish : {QueueWish::automatic, QueueWish::async_compute}) {
+        GraphBuilder graph;
+        Buffer before = graph.import_buffer("uploaded", {.size_bytes = 64},
+                                            {.initial_stages = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                             .initial_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                             .read_only = true});
+        graph.share_between_queues(before);
+        Image output = graph.import_image("output", color_image(), left_for_host());
+        Buffer list = graph.create_buffer("list", {.size_bytes = 64});
+        graph.add_pass("cluster", PassKind::compute)
+            .reads(before, Access::storage_compute)
+            .writes(list, Access::storage_compute)
+            .on_queue(wish);
+        graph.add_pass("opaque", PassKind::graphics).writes(output, Access::color_attachment);
+        graph.add_pass("apply", PassKind::graphics)
+            .reads(list, Access::storage_fragment)
+            .modifies(output, Access::color_attachment);
+        DeclaredGraph declared = graph.finish();
+        const Costs worth_it = costs(2 * ms, 3 * ms, 1 * ms);
+        const Plan plan = compiled_with(declared.desc, worth_it);
+        EXPECT_EQ(queue_of(plan, 0), 0U);
+        EXPECT_EQ(plan.passes[0].queue_reason, QueueReason::import_ordered_by_queue);
+        EXPECT_TRUE(verify(declared.desc, plan).empty());
+        // A semaphore orders it for every queue, and what the host itself wrote is there before anything is submitted.
+        ImportDesc& import = declared.desc.imports[0];
+        import.waits_semaphore = true;
+        EXPECT_EQ(queue_of(compiled_with(declared.desc, worth_it), 0), 1U);
+        import.waits_semaphore = false;
+        import.initial_stages = VK_PIPELINE_STAGE_2_HOST_BIT;
+        import.initial_access = VK_ACCESS_2_HOST_WRITE_BIT;
+        Plan away = compiled_with(declared.desc, worth_it);
+        EXPECT_EQ(queue_of(away, 0), 1U);
+        EXPECT_TRUE(verify(declared.desc, away).empty());
+        // The checker does not take a barrier of one queue for the order of another.
+        import.initial_stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+        import.initial_access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+        for (Dependency& dependency : away.dependencies) {
+            if (dependency.hazard == Hazard::import_entry && dependency.src_stages == VK_PIPELINE_STAGE_2_HOST_BIT) {
+                dependency.src_stages = dependency.local_stages = import.initial_stages;
+                dependency.src_access = dependency.local_access = import.initial_access;
+            }
+        }
+        EXPECT_FALSE(verify(declared.desc, away).empty());
+    }
+}
+
 TEST_F(Scheduling, AQueueGetsOnlyWhatItCanDo) {
     GraphBuilder graph;
     Buffer source = graph.create_buffer("source", {.size_bytes = 64});
