@@ -10,6 +10,8 @@
 
 #include <tl/expected.hpp>
 
+#include "features/volumetrics/settings.hpp"
+
 namespace tyndall::samples {
 
 struct Size {
@@ -71,6 +73,28 @@ struct ScheduleArguments {
 /// What --switch can name.
 [[nodiscard]] std::vector<std::string> schedule_switches();
 
+/// What of the fog is varied.
+struct PrecisionConfiguration {
+    volumetrics::Integrator integrator = volumetrics::Settings{}.integrator;
+    volumetrics::SunVisibility visibility = volumetrics::Settings{}.visibility.method;
+    std::uint32_t slices = volumetrics::Settings{}.grid.slices;
+};
+
+/// Every combination of the lists is measured.
+struct PrecisionArguments {
+    std::string scene = "all";
+    Size size{320, 180};
+    std::uint32_t frames = 8; ///< the first and the last of them are judged
+    std::vector<volumetrics::Integrator> integrators{PrecisionConfiguration{}.integrator};
+    std::vector<volumetrics::SunVisibility> visibilities{PrecisionConfiguration{}.visibility};
+    std::vector<std::uint32_t> slices{PrecisionConfiguration{}.slices};
+    std::optional<std::filesystem::path> folder; ///< for precision.csv and precision.json
+    std::string device;
+    bool json = false;
+};
+/// What --scene can name besides "all".
+[[nodiscard]] std::vector<std::string> precision_scene_names();
+
 /// Exit codes of every subcommand.
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_failed = 1;    ///< the device or the machine failed
@@ -78,6 +102,7 @@ inline constexpr int exit_bad_input = 2; ///< what the user gave cannot be used
 
 [[nodiscard]] int run_render(const RenderArguments& arguments);
 [[nodiscard]] int run_schedule(const ScheduleArguments& arguments);
+[[nodiscard]] int run_precision(const PrecisionArguments& arguments);
 [[nodiscard]] int run_info(const InfoArguments& arguments);
 
 } // namespace tyndall::samples

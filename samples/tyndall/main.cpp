@@ -1,6 +1,7 @@
 // The tool `tyndall`: one executable, one subcommand a use.
 #include <cstdio>
 #include <exception>
+#include <map>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -10,6 +11,7 @@
 
 namespace {
 
+using namespace tyndall;
 using namespace tyndall::samples;
 
 int bad_input(const std::string& sentence) {
@@ -36,6 +38,43 @@ void add_schedule_options(CLI::App& command, ScheduleArguments& schedule) {
     command.add_option("--trace", schedule.trace, "timeline to write, for Perfetto or chrome://tracing");
     command.add_flag("--verify", schedule.verify, "prove the plan free of races, or list where it is not");
     command.add_flag("--json", schedule.json, "print the plan as JSON instead of the report");
+}
+
+void add_precision_options(CLI::App& command, PrecisionArguments& precision, std::string& size) {
+    using volumetrics::Integrator;
+    using volumetrics::SunVisibility;
+    static const std::map<std::string, Integrator> integrators{
+        {"euler", Integrator::euler},
+        {"half_slice", Integrator::half_slice},
+        {"exponential", Integrator::exponential},
+        {"exponential_quadratic", Integrator::exponential_quadratic}};
+    static const std::map<std::string, SunVisibility> visibilities{{"one_tap", SunVisibility::one_tap},
+                                                                   {"n_taps", SunVisibility::n_taps},
+                                                                   {"prefiltered", SunVisibility::prefiltered},
+                                                                   {"lit_fraction", SunVisibility::lit_fraction}};
+    std::vector<std::string> scenes = precision_scene_names();
+    scenes.emplace_back("all");
+    command.add_option("--scene", precision.scene, "scene to measure")
+        ->check(CLI::IsMember(scenes))
+        ->capture_default_str();
+    command.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    command.add_option("--frames", precision.frames, "jittered frames; the first and the last are judged")
+        ->check(CLI::Range(2U, 10000U))
+        ->capture_default_str();
+    command.add_option("--integrator", precision.integrators, "integrators to measure, a comma between them")
+        ->transform(CLI::Transformer(integrators))
+        ->check(CLI::IsMember(integrators))
+        ->delimiter(',');
+    command.add_option("--visibility", precision.visibilities, "visibilities of the sun, a comma between them")
+        ->transform(CLI::Transformer(visibilities))
+        ->check(CLI::IsMember(visibilities))
+        ->delimiter(',');
+    command.add_option("--slices", precision.slices, "numbers of slices, a comma between them")
+        ->check(CLI::Range(8U, 512U))
+        ->delimiter(',');
+    command.add_option("--out", precision.folder, "folder for precision.csv and precision.json");
+    command.add_option("--device", precision.device, "part of a device's name, or its index; see tyndall info");
+    command.add_flag("--json", precision.json, "print JSON instead of the table");
 }
 
 int run(int argc, char** argv) {
@@ -90,6 +129,12 @@ int run(int argc, char** argv) {
         "schedule", "Compile a frame that a JSON file describes, and explain the plan; no GPU needed");
     add_schedule_options(*schedule_command, schedule);
 
+    PrecisionArguments precision;
+    std::string precision_size = "320x180";
+    CLI::App* precision_command =
+        app.add_subcommand("precision", "Error against run time, on scenes whose exact picture is computed");
+    add_precision_options(*precision_command, precision, precision_size);
+
     InfoArguments info;
     CLI::App* info_command = app.add_subcommand("info", "List devices, their queues and what is supported");
     info_command->add_option("--device", info.device, "part of a device's name, or its index");
@@ -110,6 +155,14 @@ int run(int argc, char** argv) {
         render.size = *parsed;
         render.queues = queues == "two" ? Queues::two : queues == "measured" ? Queues::measured : Queues::one;
         return run_render(render);
+    }
+    if (precision_command->parsed()) {
+        const tl::expected<Size, std::string> parsed = parse_size(precision_size);
+        if (!parsed) {
+            return bad_input(parsed.error());
+        }
+        precision.size = *parsed;
+        return run_precision(precision);
     }
     return schedule_command->parsed() ? run_schedule(schedule) : run_info(info);
 }
