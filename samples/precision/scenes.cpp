@@ -43,7 +43,7 @@ PrecisionScene height_fog() {
         .extinction_per_m = 0.08F, .albedo = glm::vec3(0.95F), .base_height_m = -1.0F, .falloff_per_m = 0.25F};
     scene.fog.medium.phase_g = 0.5F;
     scene.fog.medium.ambient_radiance = glm::vec3(0.1F);
-    scene.camera = look({0.0, 3.0, 0.0}, {0.0, 3.5, -1.0}, 50.0);
+    scene.camera = look({0.0, 3.0, 0.0}, {0.0, 3.5, -8.0}, 50.0);
     scene.sun = reference::DirectionalLight{glm::normalize(glm::dvec3(0.5, -0.9, 0.3)), glm::dvec3(20.0, 18.0, 15.0)};
     scene.surroundings = {.ambient_up = glm::dvec3(0.3), .ambient_down = glm::dvec3(0.1)};
     return scene;

@@ -88,6 +88,7 @@ struct PrecisionArguments {
     std::vector<volumetrics::Integrator> integrators{PrecisionConfiguration{}.integrator};
     std::vector<volumetrics::SunVisibility> visibilities{PrecisionConfiguration{}.visibility};
     std::vector<std::uint32_t> slices{PrecisionConfiguration{}.slices};
+    bool airlight = false;                       ///< surfaces are black: the fog alone is judged
     std::optional<std::filesystem::path> folder; ///< for precision.csv and precision.json
     std::string device;
     bool json = false;

@@ -62,16 +62,15 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, std
         ->check(CLI::Range(2U, 10000U))
         ->capture_default_str();
     command.add_option("--integrator", precision.integrators, "integrators to measure, a comma between them")
-        ->transform(CLI::Transformer(integrators))
-        ->check(CLI::IsMember(integrators))
+        ->transform(CLI::CheckedTransformer(integrators))
         ->delimiter(',');
     command.add_option("--visibility", precision.visibilities, "visibilities of the sun, a comma between them")
-        ->transform(CLI::Transformer(visibilities))
-        ->check(CLI::IsMember(visibilities))
+        ->transform(CLI::CheckedTransformer(visibilities))
         ->delimiter(',');
     command.add_option("--slices", precision.slices, "numbers of slices, a comma between them")
         ->check(CLI::Range(8U, 512U))
         ->delimiter(',');
+    command.add_flag("--airlight", precision.airlight, "make all surfaces black, so that the fog alone is judged");
     command.add_option("--out", precision.folder, "folder for precision.csv and precision.json");
     command.add_option("--device", precision.device, "part of a device's name, or its index; see tyndall info");
     command.add_flag("--json", precision.json, "print JSON instead of the table");

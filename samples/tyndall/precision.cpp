@@ -49,6 +49,12 @@ struct Row {
     double frame_ms = 0.0;
 };
 
+void make_black(PrecisionScene& scene) {
+    for (Surface& surface : scene.surfaces) {
+        surface.albedo = glm::dvec3(0.0);
+    }
+}
+
 bool has_local_shadows(const PrecisionScene& scene) {
     return std::any_of(scene.lights.begin(), scene.lights.end(),
                        [](const reference::Light& light) { return light.casts_shadows; });
@@ -288,7 +294,10 @@ int run_precision(const PrecisionArguments& arguments) {
     {
         Progress progress;
         const reference::ImageSize size{arguments.size.width, arguments.size.height};
-        for (const PrecisionScene& scene : precision_scenes()) {
+        for (PrecisionScene scene : precision_scenes()) {
+            if (arguments.airlight) {
+                make_black(scene);
+            }
             if (arguments.scene != "all" && arguments.scene != scene.name) {
                 continue;
             }

@@ -1,0 +1,137 @@
+// The measures of an error by hand, the scenes' two forms, and the study end to end at a tiny size.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "samples/precision/metrics.hpp"
+#include "samples/precision/scene.hpp"
+#include "tests/samples/tool_process.hpp"
+
+namespace tyndall::test {
+namespace {
+
+using samples::compare_images;
+using samples::ErrorMetrics;
+
+TEST(PrecisionMetrics, ByHand) {
+    // 100 pixels of 2, each 0.1 too bright, but one that is 1 too dark.
+    std::vector<glm::dvec3> exact(100, glm::dvec3(2.0));
+    std::vector<glm::dvec3> found(100, glm::dvec3(2.1));
+    found[17] = glm::dvec3(1.0);
+    const ErrorMetrics e = compare_images(found, exact);
+    EXPECT_NEAR(e.rmse, std::sqrt((99 * 0.01 + 1.0) / 100.0), 1e-12);
+    EXPECT_NEAR(e.relative_l2, e.rmse / 2.0, 1e-12);
+    EXPECT_NEAR(e.percentile99, 0.05, 1e-12);
+    EXPECT_NEAR(e.maximum, 0.5, 1e-12);
+    EXPECT_NEAR(e.bias, (99 * 0.1 - 1.0) / 200.0, 1e-12);
+    const ErrorMetrics none = compare_images(exact, exact);
+    EXPECT_EQ(none.relative_l2, 0.0);
+    EXPECT_EQ(none.standard_error, 0.0);
+}
+
+TEST(PrecisionMetrics, TheStandardErrorIsTheSpreadOfSmallChoices) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::vector<double> values;
+    double claimed = 0.0;
+    constexpr int trials = 400;
+    for (int trial = 0; trial < trials; ++trial) {
+        std::vector<glm::dvec3> exact;
+        std::vector<glm::dvec3> found;
+        for (int i = 0; i < 300; ++i) {
+            exact.emplace_back(1.0 + uniform(random));
+            found.push_back(exact.back() + glm::dvec3(0.3 * std::pow(uniform(random), 4.0)));
+        }
+        const ErrorMetrics e = compare_images(found, exact);
+        values.push_back(e.relative_l2);
+        claimed += e.standard_error / trials;
+    }
+    double mean = 0.0;
+    for (const double v : values) {
+        mean += v / trials;
+    }
+    double variance = 0.0;
+    for (const double v : values) {
+        variance += (v - mean) * (v - mean) / (trials - 1);
+    }
+    EXPECT_NEAR(claimed, std::sqrt(variance), 0.15 * claimed);
+}
+
+TEST(PrecisionScenes, BothFormsHaveTheSameSurfacesFacingTheirOutside) {
+    for (const samples::PrecisionScene& scene : samples::precision_scenes()) {
+        const engine::Scene drawn = samples::engine_scene(scene);
+        const samples::reference::Scene exact = samples::reference_scene(scene, {});
+        std::size_t triangles = 0;
+        for (const engine::Primitive& primitive : drawn.primitives) {
+            for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+                const auto corner = [&](std::size_t k) { return primitive.positions[primitive.indices[i + k]]; };
+                const glm::vec3 area = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+                EXPECT_GT(glm::dot(area, primitive.normals[primitive.indices[i]]), 0.0F) << scene.name;
+                const auto& truth = exact.geometry.triangles()[triangles].corners;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    EXPECT_LT(glm::distance(glm::dvec3(corner(k)), truth[k]), 1e-5) << scene.name;
+                }
+                ++triangles;
+            }
+        }
+        EXPECT_EQ(triangles, exact.geometry.triangles().size()) << scene.name;
+        // Every ray ends on a surface within the grid.
+        const samples::reference::ImageSize size{32, 18};
+        const glm::dvec3 forward = -glm::normalize(glm::dvec3(scene.camera.world_from_camera[2]));
+        for (const samples::reference::Pixel& pixel : samples::reference::all_pixels(size)) {
+            const samples::reference::Ray ray = samples::reference::pixel_ray(scene.camera, size, pixel);
+            const auto hit = exact.geometry.hit(ray);
+            ASSERT_TRUE(hit.has_value()) << scene.name << " " << pixel.x << " " << pixel.y;
+            EXPECT_LT(hit->distance_m * glm::dot(ray.direction, forward),
+                      static_cast<double>(scene.fog.settings.grid.range_m))
+                << scene.name;
+        }
+    }
+}
+
+TEST(Precision, SlabIsExactAndTheFilesHoldWhatIsPrinted) {
+    const std::filesystem::path folder = fresh_folder();
+    const ToolRun run = run_tool({"precision", "--scene", "slab", "--size", "32x18", "--frames", "2", "--integrator",
+                                  "euler,exponential", "--out", folder.string(), "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const nlohmann::json printed = nlohmann::json::parse(run.output);
+    std::ifstream file(folder / "precision.json");
+    EXPECT_EQ(nlohmann::json::parse(file), printed);
+    double euler = 0.0;
+    double exponential = 0.0;
+    for (const nlohmann::json& row : printed["rows"]) {
+        const double error = row["relative_l2"];
+        (row["integrator"] == "euler" ? euler : exponential) = error;
+        EXPECT_LT(row["reference_error"], 1e-5);
+        EXPECT_GT(row["fog_ms"], 0.0);
+    }
+    EXPECT_LT(exponential, 1e-3);
+    EXPECT_GT(euler, 1e-3);
+    std::ifstream csv(folder / "precision.csv");
+    const auto lines = std::count(std::istreambuf_iterator<char>(csv), {}, '\n');
+    EXPECT_EQ(lines, 1 + static_cast<std::ptrdiff_t>(printed["rows"].size()));
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Precision, RefusesWhatItCannotMeasure) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"precision", "--scene", "hell"},
+                                                      {"precision", "--integrator", "rk4"},
+                                                      {"precision", "--slices", "4"},
+                                                      {"precision", "--size", "0x3"},
+                                                      {"precision", "--frames", "1"}}) {
+        const ToolRun run = run_tool(arguments);
+        EXPECT_EQ(run.exit_code, 2) << arguments[1];
+        EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+        EXPECT_NE(run.errors.find(arguments[1].substr(2)), std::string::npos) << run.errors;
+    }
+}
+
+} // namespace
+} // namespace tyndall::test
