@@ -4,11 +4,11 @@
 
 namespace tyndall::samples {
 
-tl::expected<Size, std::string> parse_size(std::string_view text) {
+tl::expected<Size, std::string> parse_size(std::string_view text, std::string_view option) {
     constexpr std::uint32_t largest = 16384;
     const auto wrong = [&] {
-        return tl::unexpected("--size must be WIDTHxHEIGHT with both from 1 to " + std::to_string(largest) + ", not '" +
-                              std::string(text) + "'");
+        return tl::unexpected(std::string(option) + " must be WIDTHxHEIGHT with both from 1 to " +
+                              std::to_string(largest) + ", not '" + std::string(text) + "'");
     };
     const std::size_t cross = text.find('x');
     if (cross == std::string_view::npos) {

@@ -18,8 +18,8 @@ struct Size {
     std::uint32_t width = 1280;
     std::uint32_t height = 720;
 };
-/// "1280x720"; each side 1 to 16384. The error is one sentence.
-[[nodiscard]] tl::expected<Size, std::string> parse_size(std::string_view text);
+/// "1280x720"; each side 1 to 16384. The error is one sentence that names the option.
+[[nodiscard]] tl::expected<Size, std::string> parse_size(std::string_view text, std::string_view option = "--size");
 
 enum class Queues : std::uint8_t {
     one,
@@ -77,6 +77,7 @@ struct ScheduleArguments {
 struct PrecisionConfiguration {
     volumetrics::Integrator integrator = volumetrics::Settings{}.integrator;
     volumetrics::SunVisibility visibility = volumetrics::Settings{}.visibility.method;
+    Size grid{volumetrics::Settings{}.grid.width, volumetrics::Settings{}.grid.height}; ///< columns of froxels
     std::uint32_t slices = volumetrics::Settings{}.grid.slices;
 };
 
@@ -87,7 +88,10 @@ struct PrecisionArguments {
     std::uint32_t frames = 8; ///< the first and the last of them are judged
     std::vector<volumetrics::Integrator> integrators{PrecisionConfiguration{}.integrator};
     std::vector<volumetrics::SunVisibility> visibilities{PrecisionConfiguration{}.visibility};
+    std::vector<Size> grids{PrecisionConfiguration{}.grid};
     std::vector<std::uint32_t> slices{PrecisionConfiguration{}.slices};
+    std::optional<double> error;                 ///< choose the cheapest within this relative L2 error
+    std::optional<double> budget_ms;             ///< choose the most exact that takes no longer, fog's passes
     bool airlight = false;                       ///< surfaces are black: the fog alone is judged
     std::optional<std::filesystem::path> folder; ///< for precision.csv and precision.json
     std::string device;

@@ -2,11 +2,13 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <optional>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "samples/precision/choice.hpp"
 #include "samples/tyndall/arguments.hpp"
 
 namespace {
@@ -40,7 +42,15 @@ void add_schedule_options(CLI::App& command, ScheduleArguments& schedule) {
     command.add_flag("--json", schedule.json, "print the plan as JSON instead of the report");
 }
 
-void add_precision_options(CLI::App& command, PrecisionArguments& precision, std::string& size) {
+/// What CLI11 cannot parse by itself.
+struct PrecisionTexts {
+    std::string size = "320x180";
+    std::vector<std::string> grids;
+    std::optional<std::string> error;
+    std::optional<std::string> budget;
+};
+
+void add_precision_options(CLI::App& command, PrecisionArguments& precision, PrecisionTexts& texts) {
     using volumetrics::Integrator;
     using volumetrics::SunVisibility;
     static const std::map<std::string, Integrator> integrators{
@@ -57,7 +67,7 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, std
     command.add_option("--scene", precision.scene, "scene to measure")
         ->check(CLI::IsMember(scenes))
         ->capture_default_str();
-    command.add_option("--size", size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    command.add_option("--size", texts.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
     command.add_option("--frames", precision.frames, "jittered frames; the first and the last are judged")
         ->check(CLI::Range(2U, 10000U))
         ->capture_default_str();
@@ -67,6 +77,12 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, std
     command.add_option("--visibility", precision.visibilities, "visibilities of the sun, a comma between them")
         ->transform(CLI::CheckedTransformer(visibilities))
         ->delimiter(',');
+    command.add_option("--grid", texts.grids, "columns of froxels, WIDTHxHEIGHT, a comma between several")
+        ->delimiter(',');
+    command.add_option("--error", texts.error,
+                       "of what is measured choose the cheapest within this relative L2 error (2%), and run it again");
+    command.add_option("--budget", texts.budget,
+                       "choose the most exact whose fog takes no longer (30ms), and run it again");
     command.add_option("--slices", precision.slices, "numbers of slices, a comma between them")
         ->check(CLI::Range(8U, 512U))
         ->delimiter(',');
@@ -74,6 +90,30 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, std
     command.add_option("--out", precision.folder, "folder for precision.csv and precision.json");
     command.add_option("--device", precision.device, "part of a device's name, or its index; see tyndall info");
     command.add_flag("--json", precision.json, "print JSON instead of the table");
+}
+
+tl::expected<void, std::string> parse_texts(const PrecisionTexts& texts, PrecisionArguments& precision) {
+    const auto take = [](auto parsed, auto& into) -> tl::expected<void, std::string> {
+        if (!parsed) {
+            return tl::unexpected(parsed.error());
+        }
+        into = *parsed;
+        return {};
+    };
+    tl::expected<void, std::string> result = take(parse_size(texts.size), precision.size);
+    if (!texts.grids.empty()) {
+        precision.grids.resize(texts.grids.size());
+        for (std::size_t i = 0; result && i < texts.grids.size(); ++i) {
+            result = take(parse_size(texts.grids[i], "--grid"), precision.grids[i]);
+        }
+    }
+    if (result && texts.error) {
+        result = take(parse_error_bound(*texts.error), precision.error);
+    }
+    if (result && texts.budget) {
+        result = take(parse_budget_ms(*texts.budget), precision.budget_ms);
+    }
+    return result;
 }
 
 int run(int argc, char** argv) {
@@ -129,10 +169,10 @@ int run(int argc, char** argv) {
     add_schedule_options(*schedule_command, schedule);
 
     PrecisionArguments precision;
-    std::string precision_size = "320x180";
+    PrecisionTexts precision_texts;
     CLI::App* precision_command =
         app.add_subcommand("precision", "Error against run time, on scenes whose exact picture is computed");
-    add_precision_options(*precision_command, precision, precision_size);
+    add_precision_options(*precision_command, precision, precision_texts);
 
     InfoArguments info;
     CLI::App* info_command = app.add_subcommand("info", "List devices, their queues and what is supported");
@@ -156,11 +196,9 @@ int run(int argc, char** argv) {
         return run_render(render);
     }
     if (precision_command->parsed()) {
-        const tl::expected<Size, std::string> parsed = parse_size(precision_size);
-        if (!parsed) {
+        if (const auto parsed = parse_texts(precision_texts, precision); !parsed) {
             return bad_input(parsed.error());
         }
-        precision.size = *parsed;
         return run_precision(precision);
     }
     return schedule_command->parsed() ? run_schedule(schedule) : run_info(info);

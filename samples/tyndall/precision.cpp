@@ -8,13 +8,14 @@
 #include <tuple>
 
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include "engine/file_io.hpp"
+#include "samples/precision/choice.hpp"
 #include "samples/precision/metrics.hpp"
 #include "samples/precision/scene.hpp"
 #include "samples/tyndall/arguments.hpp"
 #include "samples/tyndall/frame_loop.hpp"
+#include "samples/tyndall/precision_report.hpp"
 #include "samples/tyndall/progress.hpp"
 #include "samples/tyndall/timing.hpp"
 
@@ -38,22 +39,19 @@ struct TruthImage {
     double relative_error = 0.0; ///< the reference's own, relative L2
 };
 
-struct Row {
-    std::string scene;
-    PrecisionConfiguration configuration;
-    std::uint32_t frame = 1;
-    const char* physics = "";
-    ErrorMetrics error;
-    double reference_error = 0.0;
-    double fog_ms = 0.0;
-    double frame_ms = 0.0;
-};
-
 void make_black(PrecisionScene& scene) {
     for (Surface& surface : scene.surfaces) {
         surface.albedo = glm::dvec3(0.0);
     }
 }
+
+/// A scene and what its pictures are compared with.
+struct Bench {
+    const engine::Device& device;
+    PrecisionScene scene;
+    std::vector<reference::Pixel> pixels;
+    std::vector<TruthImage> truths;
+};
 
 bool has_local_shadows(const PrecisionScene& scene) {
     return std::any_of(scene.lights.begin(), scene.lights.end(),
@@ -107,20 +105,22 @@ std::vector<glm::dvec3> choose(const engine::Pixels<float>& image, std::span<con
 }
 
 /// The first frame and the last of `arguments.frames`, after a cut; then the times.
-Expected<std::vector<Row>> measure(const engine::Device& device, const PrecisionArguments& arguments,
-                                   const PrecisionScene& scene, const PrecisionConfiguration& configuration,
-                                   std::span<const reference::Pixel> pixels, std::span<const TruthImage> images) {
+Expected<std::vector<PrecisionRow>> measure(const PrecisionArguments& arguments, const Bench& bench,
+                                            const PrecisionConfiguration& configuration) {
+    const PrecisionScene& scene = bench.scene;
     FrameLoopInfo info;
     info.renderer = renderer_settings(scene);
     info.fog = scene.fog;
     info.fog->settings.integrator = configuration.integrator;
     info.fog->settings.visibility.method = configuration.visibility;
+    info.fog->settings.grid.width = configuration.grid.width;
+    info.fog->settings.grid.height = configuration.grid.height;
     info.fog->settings.grid.slices = configuration.slices;
     info.profile = true;
     if (const auto valid = volumetrics::validate(info.fog->settings); !valid) {
         return tl::unexpected(valid.error().message);
     }
-    auto loop = FrameLoop::create(device, engine_scene(scene), std::move(info));
+    auto loop = FrameLoop::create(bench.device, engine_scene(scene), std::move(info));
     if (!loop) {
         return tl::unexpected(loop.error().message);
     }
@@ -128,7 +128,7 @@ Expected<std::vector<Row>> measure(const engine::Device& device, const Precision
     wishes.camera = engine_scene(scene).cameras.front();
     wishes.size = {arguments.size.width, arguments.size.height};
     wishes.time_s = scene.time_s;
-    std::vector<Row> rows;
+    std::vector<PrecisionRow> rows;
     Timings timings;
     std::set<std::string> without_fog;
     constexpr std::uint32_t warm_frames = 2; // compile shaders and fill caches
@@ -149,8 +149,8 @@ Expected<std::vector<Row>> measure(const engine::Device& device, const Precision
             timings.add_frame((*loop)->graph(), (*loop)->timings());
         }
         if (frame > 0 && wishes.read_radiance) {
-            const std::vector<glm::dvec3> found = choose((*loop)->radiance(), pixels);
-            for (const TruthImage& image : images) {
+            const std::vector<glm::dvec3> found = choose((*loop)->radiance(), bench.pixels);
+            for (const TruthImage& image : bench.truths) {
                 rows.push_back({.scene = scene.name,
                                 .configuration = configuration,
                                 .frame = frame,
@@ -160,85 +160,10 @@ Expected<std::vector<Row>> measure(const engine::Device& device, const Precision
             }
         }
     }
-    for (Row& row : rows) {
+    for (PrecisionRow& row : rows) {
         std::tie(row.fog_ms, row.frame_ms) = times_ms(timings, without_fog);
     }
     return rows;
-}
-
-const char* name_of(volumetrics::Integrator integrator) {
-    constexpr std::array names{"euler", "half_slice", "exponential", "exponential_quadratic"};
-    return names[static_cast<std::size_t>(integrator)];
-}
-const char* name_of(volumetrics::SunVisibility visibility) {
-    constexpr std::array names{"one_tap", "n_taps", "prefiltered", "lit_fraction"};
-    return names[static_cast<std::size_t>(visibility)];
-}
-
-std::string to_csv(std::span<const Row> rows, const std::string& device) {
-    std::string text = "scene,integrator,visibility,slices,frame,physics,relative_l2,standard_error,rmse_cd_m2,"
-                       "percentile99,maximum,bias,reference_error,fog_ms,frame_ms,device\n";
-    std::array<char, 512> line{};
-    for (const Row& row : rows) {
-        const ErrorMetrics& e = row.error;
-        std::snprintf(line.data(), line.size(),
-                      "%s,%s,%s,%u,%u,%s,%.6e,%.2e,%.6e,%.6e,%.6e,%.6e,%.1e,%.3f,%.3f,\"%s\"\n", row.scene.c_str(),
-                      name_of(row.configuration.integrator), name_of(row.configuration.visibility),
-                      row.configuration.slices, row.frame, row.physics, e.relative_l2, e.standard_error, e.rmse,
-                      e.percentile99, e.maximum, e.bias, row.reference_error, row.fog_ms, row.frame_ms, device.c_str());
-        text += line.data();
-    }
-    return text;
-}
-
-std::string to_json(std::span<const Row> rows, const PrecisionArguments& arguments, const std::string& device) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Row& row : rows) {
-        const ErrorMetrics& e = row.error;
-        list.push_back({{"scene", row.scene},
-                        {"integrator", name_of(row.configuration.integrator)},
-                        {"visibility", name_of(row.configuration.visibility)},
-                        {"slices", row.configuration.slices},
-                        {"frame", row.frame},
-                        {"physics", row.physics},
-                        {"relative_l2", e.relative_l2},
-                        {"standard_error", e.standard_error},
-                        {"rmse_cd_m2", e.rmse},
-                        {"percentile99", e.percentile99},
-                        {"maximum", e.maximum},
-                        {"bias", e.bias},
-                        {"reference_error", row.reference_error},
-                        {"fog_ms", row.fog_ms},
-                        {"frame_ms", row.frame_ms}});
-    }
-    const nlohmann::ordered_json document = {
-        {"device", device}, {"width", arguments.size.width}, {"height", arguments.size.height}, {"rows", list}};
-    return document.dump(2) + "\n";
-}
-
-std::string to_table(std::span<const Row> rows, const std::string& device) {
-    std::string text = "device: " + device + "\n";
-    std::array<char, 256> line{};
-    std::snprintf(line.data(), line.size(), "%-12s %-22s %-12s %6s %5s  %-31s %9s %9s %9s %9s %8s %8s\n", "scene",
-                  "integrator", "visibility", "slices", "frame", "compared with physics", "rel. L2", "+-", "99th perc.",
-                  "bias", "fog ms", "frame ms");
-    text += line.data();
-    for (const Row& row : rows) {
-        const ErrorMetrics& e = row.error;
-        std::snprintf(line.data(), line.size(),
-                      "%-12s %-22s %-12s %6u %5u  %-31s %8.3f%% %8.3f%% %9.2f%% %+8.3f%% %8.2f %8.2f\n",
-                      row.scene.c_str(), name_of(row.configuration.integrator), name_of(row.configuration.visibility),
-                      row.configuration.slices, row.frame, row.physics, 100.0 * e.relative_l2, 100.0 * e.standard_error,
-                      100.0 * e.percentile99, 100.0 * e.bias, row.fog_ms, row.frame_ms);
-        text += line.data();
-    }
-    const auto [smallest, largest] = std::minmax_element(
-        rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.error.relative_l2 < b.error.relative_l2; });
-    const auto least_exact = std::max_element(
-        rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.reference_error < b.reference_error; });
-    std::snprintf(line.data(), line.size(), "errors from %.1e to %.1e; the exact pictures' own is at most %.1e\n",
-                  smallest->error.relative_l2, largest->error.relative_l2, least_exact->reference_error);
-    return text + line.data();
 }
 
 Expected<void> write(const std::filesystem::path& path, const std::string& text) {
@@ -252,12 +177,82 @@ std::vector<PrecisionConfiguration> configurations(const PrecisionArguments& arg
     std::vector<PrecisionConfiguration> all;
     for (const volumetrics::Integrator integrator : arguments.integrators) {
         for (const volumetrics::SunVisibility visibility : arguments.visibilities) {
-            for (const std::uint32_t slices : arguments.slices) {
-                all.push_back({integrator, visibility, slices});
+            for (const Size& grid : arguments.grids) {
+                for (const std::uint32_t slices : arguments.slices) {
+                    all.push_back({integrator, visibility, grid, slices});
+                }
             }
         }
     }
     return all;
+}
+
+std::string percent(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g %%", 100.0 * value);
+    return text.data();
+}
+std::string milliseconds(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g ms", value);
+    return text.data();
+}
+
+bool is_judged(const PrecisionRow& row, const PrecisionArguments& arguments) {
+    return row.frame == arguments.frames && row.physics == truths.front().name;
+}
+
+std::string to_text(const PrecisionRow& row) {
+    return to_text(row.configuration) + ": " + percent(row.error.relative_l2) + " in " + milliseconds(row.fog_ms);
+}
+
+/// What a bound of error or time chose, run once more, and why; or by how much nothing reaches it.
+Expected<std::string> choose_and_run(const PrecisionArguments& arguments, const Bench& bench,
+                                     std::span<const PrecisionRow> rows) {
+    std::vector<const PrecisionRow*> judged;
+    std::vector<Measured> measured;
+    for (const PrecisionRow& row : rows) {
+        if (row.scene == bench.scene.name && is_judged(row, arguments)) {
+            judged.push_back(&row);
+            measured.push_back({row.error.relative_l2, row.fog_ms});
+        }
+    }
+    std::string text;
+    const auto report = [&](const std::string& wish, std::optional<std::size_t> choice,
+                            std::size_t nearest) -> Expected<void> {
+        text += bench.scene.name + ", " + wish + ": ";
+        if (!choice) {
+            text += "unreachable by what was measured; nearest is " + to_text(*judged[nearest]) + "\n";
+            return {};
+        }
+        const auto again = measure(arguments, bench, judged[*choice]->configuration);
+        if (!again) {
+            return tl::unexpected(again.error());
+        }
+        text += to_text(*judged[*choice]);
+        for (const PrecisionRow& row : *again) {
+            if (is_judged(row, arguments)) {
+                text += "; run again: " + percent(row.error.relative_l2) + " in " + milliseconds(row.fog_ms);
+            }
+        }
+        text += "\n";
+        return {};
+    };
+    if (arguments.error) {
+        const auto done = report("the cheapest within " + percent(*arguments.error),
+                                 cheapest_within(measured, *arguments.error), *most_exact_within(measured, 1e300));
+        if (!done) {
+            return tl::unexpected(done.error());
+        }
+    }
+    if (arguments.budget_ms) {
+        const auto done = report("the most exact within " + milliseconds(*arguments.budget_ms),
+                                 most_exact_within(measured, *arguments.budget_ms), *cheapest_within(measured, 1e300));
+        if (!done) {
+            return tl::unexpected(done.error());
+        }
+    }
+    return text;
 }
 
 } // namespace
@@ -290,7 +285,8 @@ int run_precision(const PrecisionArguments& arguments) {
     if (!device) {
         return fail(arguments.device.empty() ? exit_failed : exit_bad_input, device.error().message);
     }
-    std::vector<Row> rows;
+    std::vector<PrecisionRow> rows;
+    std::string choices;
     {
         Progress progress;
         const reference::ImageSize size{arguments.size.width, arguments.size.height};
@@ -303,30 +299,35 @@ int run_precision(const PrecisionArguments& arguments) {
             }
             const std::size_t all = std::size_t{size.width} * size.height;
             const std::size_t most = scene.pixels > 0 ? std::min(scene.pixels, all) : all;
-            const std::vector<reference::Pixel> pixels = reference::random_pixels(size, most, 1);
-            const std::vector<TruthImage> images = compute_truths(scene, size, pixels, 1e-5, progress);
+            Bench bench{*device, scene, reference::random_pixels(size, most, 1), {}};
+            bench.truths = compute_truths(scene, size, bench.pixels, 1e-5, progress);
             for (const PrecisionConfiguration& configuration : configurations(arguments)) {
-                progress.show(scene.name + ", " + name_of(configuration.integrator) + ", " +
-                              name_of(configuration.visibility) + ", " + std::to_string(configuration.slices) +
-                              " slices");
-                auto measured = measure(*device, arguments, scene, configuration, pixels, images);
+                progress.show(scene.name + ", " + to_text(configuration));
+                const auto measured = measure(arguments, bench, configuration);
                 if (!measured) {
                     return fail(exit_bad_input, measured.error());
                 }
                 rows.insert(rows.end(), measured->begin(), measured->end());
             }
+            const auto chosen = choose_and_run(arguments, bench, rows);
+            if (!chosen) {
+                return fail(exit_failed, chosen.error());
+            }
+            choices += *chosen;
         }
     }
+    mark_front(rows);
     const std::string device_text = device->info().name + ", " + device->info().driver;
     if (arguments.folder) {
         for (const auto& [name, text] : {std::pair{"precision.csv", to_csv(rows, device_text)},
-                                         std::pair{"precision.json", to_json(rows, arguments, device_text)}}) {
+                                         std::pair{"precision.json", to_json(rows, arguments.size, device_text)}}) {
             if (const auto written = write(*arguments.folder / name, text); !written) {
                 return fail(exit_bad_input, written.error());
             }
         }
     }
-    const std::string text = arguments.json ? to_json(rows, arguments, device_text) : to_table(rows, device_text);
+    const std::string text =
+        arguments.json ? to_json(rows, arguments.size, device_text) : to_table(rows, device_text) + choices;
     std::fputs(text.c_str(), stdout);
     return exit_ok;
 }

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "samples/precision/choice.hpp"
 #include "samples/precision/metrics.hpp"
 #include "samples/precision/scene.hpp"
 #include "tests/samples/tool_process.hpp"
@@ -62,6 +63,33 @@ TEST(PrecisionMetrics, TheStandardErrorIsTheSpreadOfSmallChoices) {
         variance += (v - mean) * (v - mean) / (trials - 1);
     }
     EXPECT_NEAR(claimed, std::sqrt(variance), 0.15 * claimed);
+}
+
+TEST(PrecisionChoice, FrontAndBounds) {
+    using samples::Measured;
+    const std::vector<Measured> all{{0.05, 10.0}, {0.02, 20.0}, {0.03, 25.0}, {0.01, 40.0}, {0.02, 22.0}, {0.05, 10.0}};
+    EXPECT_EQ(samples::pareto_front(all), (std::vector<bool>{true, true, false, true, false, true}));
+    EXPECT_EQ(samples::cheapest_within(all, 0.04), 1U);
+    EXPECT_EQ(samples::cheapest_within(all, 0.01), 3U);
+    EXPECT_EQ(samples::cheapest_within(all, 0.009), std::nullopt);
+    EXPECT_EQ(samples::most_exact_within(all, 30.0), 1U); // 22 ms are no better than 20
+    EXPECT_EQ(samples::most_exact_within(all, 10.0), 0U);
+    EXPECT_EQ(samples::most_exact_within(all, 9.0), std::nullopt);
+}
+
+TEST(PrecisionChoice, Bounds) {
+    EXPECT_DOUBLE_EQ(samples::parse_error_bound("2%").value(), 0.02);
+    EXPECT_DOUBLE_EQ(samples::parse_error_bound("0.5").value(), 0.5);
+    EXPECT_DOUBLE_EQ(samples::parse_budget_ms("30ms").value(), 30.0);
+    EXPECT_DOUBLE_EQ(samples::parse_budget_ms("1.5").value(), 1.5);
+    for (const char* wrong : {"", "%", "2 %", "-1%", "nan", "101%", "2ms", "inf", "0"}) {
+        const auto parsed = samples::parse_error_bound(wrong);
+        ASSERT_FALSE(parsed) << wrong;
+        EXPECT_NE(parsed.error().find("'" + std::string(wrong) + "'"), std::string::npos);
+    }
+    for (const char* wrong : {"", "ms", "-1ms", "nan", "2%", "inf", "0", "1e7"}) {
+        EXPECT_FALSE(samples::parse_budget_ms(wrong)) << wrong;
+    }
 }
 
 TEST(PrecisionScenes, BothFormsHaveTheSameSurfacesFacingTheirOutside) {
@@ -120,12 +148,26 @@ TEST(Precision, SlabIsExactAndTheFilesHoldWhatIsPrinted) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(Precision, ChoosesAndRunsTheChoice) {
+    const ToolRun run =
+        run_tool({"precision", "--scene", "slab", "--size", "32x18", "--frames", "2", "--slices", "8,64",
+                  "--integrator", "euler,exponential", "--error", "0.5%", "--budget", "0.000001ms"});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const std::size_t choice = run.output.find("slab, the cheapest within 0.5 %: exponential, ");
+    ASSERT_NE(choice, std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("; run again: ", choice), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("slab, the most exact within 1e-06 ms: unreachable"), std::string::npos) << run.output;
+}
+
 TEST(Precision, RefusesWhatItCannotMeasure) {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{"precision", "--scene", "hell"},
                                                       {"precision", "--integrator", "rk4"},
                                                       {"precision", "--slices", "4"},
                                                       {"precision", "--size", "0x3"},
-                                                      {"precision", "--frames", "1"}}) {
+                                                      {"precision", "--frames", "1"},
+                                                      {"precision", "--grid", "0x3"},
+                                                      {"precision", "--error", "-2%"},
+                                                      {"precision", "--budget", "soon"}}) {
         const ToolRun run = run_tool(arguments);
         EXPECT_EQ(run.exit_code, 2) << arguments[1];
         EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
