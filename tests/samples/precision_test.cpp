@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <vector>
@@ -145,6 +147,19 @@ TEST(Precision, SlabIsExactAndTheFilesHoldWhatIsPrinted) {
     std::ifstream csv(folder / "precision.csv");
     const auto lines = std::count(std::istreambuf_iterator<char>(csv), {}, '\n');
     EXPECT_EQ(lines, 1 + static_cast<std::ptrdiff_t>(printed["rows"].size()));
+
+    // The plots of that, on a page.
+    const std::string plot = std::string(TYNDALL_SAMPLES "/precision/plot.py ");
+    if (std::system("/usr/bin/python3 -c 'import matplotlib' 2>/dev/null") == 0) {
+        ASSERT_EQ(std::system((plot + folder.string()).c_str()), 0);
+        for (const char* name : {"precision_slab.png", "precision_slab.svg", "precision.html"}) {
+            EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+        }
+    } else {
+        std::printf("matplotlib is not installed; scripts/setup --test installs it\n");
+    }
+    write_text(folder / "precision.csv", "scene,grid\n");
+    EXPECT_NE(std::system((plot + folder.string() + " 2>/dev/null").c_str()), 0);
     std::filesystem::remove_all(folder);
 }
 
