@@ -1,0 +1,177 @@
+// One object of a fog file, read key by key.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+
+#include "features/volumetrics/error.hpp"
+#include "features/volumetrics/medium.hpp"
+#include "features/volumetrics/settings.hpp"
+
+namespace tyndall::volumetrics {
+
+using Json = nlohmann::json;
+
+/// Reads known keys of one object; what is left over at the end is unknown. Keeps the first complaint of all sections.
+class Section {
+public:
+    Section(const Json& object, std::string path, std::optional<Error>& error)
+        : object_(&object), path_(std::move(path)), error_(&error) {
+        if (!object.is_object()) {
+            complain(path_.empty() ? "The fog file" : path_, "must be an object");
+            object_ = nullptr;
+        }
+    }
+    Section(const Section&) = delete;
+    Section& operator=(const Section&) = delete;
+    ~Section() {
+        if (object_ == nullptr) {
+            return;
+        }
+        for (auto entry = object_->begin(); entry != object_->end(); ++entry) {
+            if (!known_.contains(entry.key())) {
+                *error_ =
+                    *error_ ? *error_ : std::optional(Error{path_of(entry.key()) + " is not a key of the fog file."});
+            }
+        }
+    }
+
+    [[nodiscard]] const Json* find(const char* key) {
+        known_.insert(key);
+        if (object_ == nullptr) {
+            return nullptr;
+        }
+        const auto found = object_->find(key);
+        return found == object_->end() ? nullptr : &*found;
+    }
+    void read(const char* key, float& value) {
+        if (const Json* json = find(key)) {
+            value = number(*json, path_of(key), value);
+        }
+    }
+    void read(const char* key, bool& value) {
+        if (const Json* json = find(key)) {
+            if (const auto* boolean = json->get_ptr<const Json::boolean_t*>()) {
+                value = *boolean;
+            } else {
+                complain(path_of(key), "must be true or false");
+            }
+        }
+    }
+    void read(const char* key, std::uint32_t& value) {
+        if (const Json* json = find(key)) {
+            const auto* whole = json->get_ptr<const Json::number_unsigned_t*>();
+            if (whole != nullptr && *whole <= std::numeric_limits<std::uint32_t>::max()) {
+                value = static_cast<std::uint32_t>(*whole);
+            } else {
+                complain(path_of(key), "must be a whole number that is not negative");
+            }
+        }
+    }
+    void read(const char* key, glm::vec3& value) {
+        if (const Json* json = find(key)) {
+            if (!json->is_array() || json->size() != 3) {
+                complain(path_of(key), "must be an array of 3 numbers");
+                return;
+            }
+            for (int i = 0; i < 3; ++i) {
+                const auto index = static_cast<std::size_t>(i);
+                value[i] = number((*json)[index], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
+            }
+        }
+    }
+    void read_per_cascade(const char* key, std::array<float, 4>& value) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        if (!json->is_array()) {
+            value.fill(number(*json, path_of(key), value[0]));
+        } else if (json->size() != value.size()) {
+            complain(path_of(key), "must be one number, or an array of 4 for the cascades");
+        } else {
+            for (std::size_t i = 0; i < value.size(); ++i) {
+                value[i] = number((*json)[i], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
+            }
+        }
+    }
+    void read(const char* key, StorageFormat& value) {
+        if (const Json* json = find(key)) {
+            const auto* name = json->get_ptr<const Json::string_t*>();
+            if (name != nullptr && (*name == "fp16" || *name == "fp32")) {
+                value = *name == "fp16" ? StorageFormat::fp16 : StorageFormat::fp32;
+            } else {
+                complain(path_of(key), "must be \"fp16\" or \"fp32\"");
+            }
+        }
+    }
+    /// One of the names of `choices`.
+    template <typename Enum>
+    void read(const char* key, Enum& value, std::initializer_list<std::pair<std::string_view, Enum>> choices) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        const auto* name = json->get_ptr<const Json::string_t*>();
+        std::string names;
+        for (const auto& [choice, meaning] : choices) {
+            if (name != nullptr && *name == choice) {
+                value = meaning;
+                return;
+            }
+            names += (names.empty() ? "\"" : ", \"") + std::string(choice) + "\"";
+        }
+        complain(path_of(key), ("must be one of " + names).c_str());
+    }
+    [[nodiscard]] std::string path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+private:
+    float number(const Json& json, const std::string& path, float fallback) {
+        if (!json.is_number()) {
+            complain(path, "must be a number");
+            return fallback;
+        }
+        const double value = json.get<double>();
+        if (!std::isfinite(value) || std::abs(value) > static_cast<double>(std::numeric_limits<float>::max())) {
+            complain(path, "must be a finite number of single precision");
+            return fallback;
+        }
+        return static_cast<float>(value);
+    }
+    void complain(const std::string& path, const char* what) {
+        if (!*error_) {
+            *error_ = Error{path + " " + what + "."};
+        }
+    }
+
+    const Json* object_;
+    std::string path_;
+    std::optional<Error>* error_;
+    std::set<std::string> known_;
+};
+
+/// Runs `read` on the object at `key`, if there is one.
+template <typename Read>
+void subsection(Section& parent, const char* key, std::optional<Error>& error, Read read) {
+    if (const Json* json = parent.find(key)) {
+        Section section(*json, parent.path_of(key), error);
+        read(section);
+    }
+}
+
+/// The media, phase function and ambient light; the rest.
+void read_medium(Section& root, Medium& medium, std::optional<Error>& error);
+void read_settings(Section& root, Settings& settings, std::optional<Error>& error);
+
+} // namespace tyndall::volumetrics

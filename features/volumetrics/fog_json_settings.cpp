@@ -1,0 +1,38 @@
+#include "features/volumetrics/fog_json_section.hpp"
+
+namespace tyndall::volumetrics {
+
+void read_settings(Section& root, Settings& settings, std::optional<Error>& error) {
+    subsection(root, "grid", error, [&](Section& s) {
+        s.read("width", settings.grid.width);
+        s.read("height", settings.grid.height);
+        s.read("slices", settings.grid.slices);
+        s.read("range_m", settings.grid.range_m);
+        settings.grid.shape_m = 0.25F * settings.grid.range_m;
+        s.read("shape_m", settings.grid.shape_m);
+    });
+    subsection(root, "shadow", error,
+               [&](Section& s) { s.read_per_cascade("esm_exponent", settings.shadow.esm_exponent); });
+    subsection(root, "temporal", error, [&](Section& s) {
+        s.read("enabled", settings.temporal.enabled);
+        s.read("new_frame_weight", settings.temporal.new_frame_weight);
+        s.read("jitter", settings.temporal.jitter);
+    });
+    root.read("storage", settings.storage);
+    root.read("integrator", settings.integrator,
+              {{"euler", Integrator::euler},
+               {"half_slice", Integrator::half_slice},
+               {"exponential", Integrator::exponential},
+               {"exponential_quadratic", Integrator::exponential_quadratic}});
+    root.read("error_estimate", settings.error_estimate);
+    subsection(root, "visibility", error, [&](Section& s) {
+        s.read("method", settings.visibility.method,
+               {{"one_tap", SunVisibility::one_tap},
+                {"n_taps", SunVisibility::n_taps},
+                {"prefiltered", SunVisibility::prefiltered},
+                {"lit_fraction", SunVisibility::lit_fraction}});
+        s.read("taps", settings.visibility.taps);
+    });
+}
+
+} // namespace tyndall::volumetrics
