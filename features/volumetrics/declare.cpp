@@ -163,13 +163,17 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     const VisibilitySettings& visibility = inputs.settings.visibility;
     const GroupShape group = row_group(grid.width);
     // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
-    const std::array<std::uint32_t, 6> constants{
+    const PhaseLobes phase = phase_of(inputs.medium);
+    const std::array<std::uint32_t, 9> constants{
         inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
         variant.sun_shadow ? graph.describe(frame->shadow_map)->layers : 0,
         is_perspective(inputs.camera),
         variant.history && frame->camera_stands,
         static_cast<std::uint32_t>(visibility.method),
         visibility.method == SunVisibility::n_taps ? visibility.taps : 1,
+        phase.count,
+        packed_functions(phase),
+        is_directed(inputs.medium),
     };
     const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
     if (!program) {

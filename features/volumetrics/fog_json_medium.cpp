@@ -2,6 +2,27 @@
 
 namespace tyndall::volumetrics {
 
+namespace {
+
+void read_lobes(Section& phase, PhaseLobes& lobes, std::optional<Error>& error) {
+    if (phase.has("g") && phase.has("lobes")) {
+        phase.complain(phase.path_of("lobes"), "takes the place of phase.g, so that only one may be given");
+    }
+    lobes.count = elements(phase, "lobes", PhaseLobes::most, error, [&](Section& s, std::uint32_t i) {
+        PhaseLobe& lobe = lobes.lobes[i];
+        s.read("function", lobe.function,
+               {{"isotropic", PhaseFunction::isotropic},
+                {"rayleigh", PhaseFunction::rayleigh},
+                {"henyey_greenstein", PhaseFunction::henyey_greenstein},
+                {"schlick", PhaseFunction::schlick},
+                {"cornette_shanks", PhaseFunction::cornette_shanks}});
+        s.read("g", lobe.g);
+        s.read("weight", lobe.weight);
+    });
+}
+
+} // namespace
+
 void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
     subsection(root, "medium", error, [&](Section& section) {
         subsection(section, "homogeneous", error, [&](Section& s) {
@@ -20,8 +41,14 @@ void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
             s.read("wind_m_s", medium.noise.wind_m_s);
         });
     });
-    subsection(root, "phase", error, [&](Section& s) { s.read("g", medium.phase_g); });
-    subsection(root, "ambient", error, [&](Section& s) { s.read("radiance", medium.ambient_radiance); });
+    subsection(root, "phase", error, [&](Section& s) {
+        s.read("g", medium.phase_g);
+        read_lobes(s, medium.phase_lobes, error);
+    });
+    subsection(root, "ambient", error, [&](Section& s) {
+        s.read("radiance", medium.ambient_radiance);
+        s.read("sh_1", medium.ambient_sh_1);
+    });
 }
 
 } // namespace tyndall::volumetrics

@@ -81,14 +81,20 @@ public:
     }
     void read(const char* key, glm::vec3& value) {
         if (const Json* json = find(key)) {
-            if (!json->is_array() || json->size() != 3) {
-                complain(path_of(key), "must be an array of 3 numbers");
-                return;
-            }
-            for (int i = 0; i < 3; ++i) {
-                const auto index = static_cast<std::size_t>(i);
-                value[i] = number((*json)[index], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
-            }
+            read_vector(*json, path_of(key), value);
+        }
+    }
+    void read(const char* key, std::array<glm::vec3, 3>& value) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        if (!json->is_array() || json->size() != 3) {
+            complain(path_of(key), "must be an array of 3 arrays of 3 numbers");
+            return;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            read_vector((*json)[i], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
         }
     }
     void read_per_cascade(const char* key, std::array<float, 4>& value) {
@@ -132,11 +138,26 @@ public:
             }
             names += (names.empty() ? "\"" : ", \"") + std::string(choice) + "\"";
         }
-        complain(path_of(key), ("must be one of " + names).c_str());
+        complain(path_of(key), "must be one of " + names);
     }
+    void complain(const std::string& path, const std::string& what) {
+        if (!*error_) {
+            *error_ = Error{path + " " + what + "."};
+        }
+    }
+    [[nodiscard]] bool has(const char* key) const { return object_ != nullptr && object_->contains(key); }
     [[nodiscard]] std::string path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
 
 private:
+    void read_vector(const Json& json, const std::string& path, glm::vec3& value) {
+        if (!json.is_array() || json.size() != 3) {
+            complain(path, "must be an array of 3 numbers");
+            return;
+        }
+        for (int i = 0; i < 3; ++i) {
+            value[i] = number(json[static_cast<std::size_t>(i)], path + "[" + std::to_string(i) + "]", value[i]);
+        }
+    }
     float number(const Json& json, const std::string& path, float fallback) {
         if (!json.is_number()) {
             complain(path, "must be a number");
@@ -148,11 +169,6 @@ private:
             return fallback;
         }
         return static_cast<float>(value);
-    }
-    void complain(const std::string& path, const char* what) {
-        if (!*error_) {
-            *error_ = Error{path + " " + what + "."};
-        }
     }
 
     const Json* object_;
@@ -168,6 +184,25 @@ void subsection(Section& parent, const char* key, std::optional<Error>& error, R
         Section section(*json, parent.path_of(key), error);
         read(section);
     }
+}
+
+/// Runs `read` on each object of the array at `key`, if there is one, and returns their number, at most `most`.
+template <typename Read>
+std::uint32_t elements(Section& parent, const char* key, std::uint32_t most, std::optional<Error>& error, Read read) {
+    const Json* json = parent.find(key);
+    if (json == nullptr) {
+        return 0;
+    }
+    if (!json->is_array() || json->empty() || json->size() > most) {
+        parent.complain(parent.path_of(key), "must be an array of 1 to " + std::to_string(most) + " objects");
+        return 0;
+    }
+    const auto count = static_cast<std::uint32_t>(json->size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Section section((*json)[i], parent.path_of(key) + "[" + std::to_string(i) + "]", error);
+        read(section, i);
+    }
+    return count;
 }
 
 /// The media, phase function and ambient light; the rest.

@@ -1,8 +1,64 @@
 #include "features/volumetrics/medium.hpp"
 
+#include <cmath>
+#include <cstdint>
+#include <string>
+
 #include "features/volumetrics/range_check.hpp"
 
 namespace tyndall::volumetrics {
+namespace {
+
+void check_lobes(const PhaseLobes& phase, RangeCheck& check) {
+    check.in_range("The number of phase.lobes", phase.count, 0.0, PhaseLobes::most);
+    if (phase.count == 0 || phase.count > PhaseLobes::most) {
+        return;
+    }
+    double weights = 0.0;
+    for (std::uint32_t i = 0; i < phase.count; ++i) {
+        const std::string key = "phase.lobes[" + std::to_string(i) + "].";
+        check.in_range(key + "g", phase.lobes[i].g, -0.999F, 0.999F);
+        check.in_range(key + "weight", phase.lobes[i].weight, 0.0, 1.0);
+        weights += static_cast<double>(phase.lobes[i].weight);
+    }
+    check.in_range("The sum of phase.lobes' weights", weights, 1e-3, PhaseLobes::most);
+}
+
+/// Radiance is nowhere negative; a part in a million of grace for what was rounded in the file.
+void check_ambient(const Medium& medium, RangeCheck& check) {
+    const glm::vec3 length = ambient_length(medium);
+    for (int channel = 0; channel < 3; ++channel) {
+        const double radiance = static_cast<double>(medium.ambient_radiance[channel]);
+        check.in_range("The length of ambient.sh_1 in channel " + std::to_string(channel) +
+                           " (at most ambient.radiance / 0.488603)",
+                       length[channel], 0.0, radiance / sh_1_constant * 1.000001);
+    }
+}
+
+} // namespace
+
+PhaseLobes phase_of(const Medium& medium) {
+    if (medium.phase_lobes.count > 0) {
+        return medium.phase_lobes;
+    }
+    PhaseLobes one{.count = 1};
+    one.lobes[0] = {.function = PhaseFunction::henyey_greenstein, .g = medium.phase_g};
+    return one;
+}
+
+glm::vec3 ambient_length(const Medium& medium) {
+    glm::vec3 squares(0.0F);
+    for (const glm::vec3& coefficient : medium.ambient_sh_1) {
+        squares += coefficient * coefficient;
+    }
+    return {std::sqrt(squares.x), std::sqrt(squares.y), std::sqrt(squares.z)};
+}
+
+bool is_directed(const Medium& medium) {
+    const glm::vec3 none(0.0F);
+    const auto& sh = medium.ambient_sh_1;
+    return mean_cosine(phase_of(medium)) != 0.0 && (sh[0] != none || sh[1] != none || sh[2] != none);
+}
 
 bool is_empty(const Medium& medium) {
     return medium.homogeneous.extinction_per_m <= 0.0F && medium.height.extinction_per_m <= 0.0F;
@@ -21,6 +77,8 @@ tl::expected<void, Error> validate(const Medium& medium) {
     check.in_range("medium.noise.wind_m_s", medium.noise.wind_m_s, -1e3, 1e3);
     check.in_range("phase.g", medium.phase_g, -0.999F, 0.999F);
     check.in_range("ambient.radiance", medium.ambient_radiance, 0.0, 1e9);
+    check_lobes(medium.phase_lobes, check);
+    check_ambient(medium, check);
     return check.result();
 }
 

@@ -2,10 +2,13 @@
 // value is finite.
 #pragma once
 
+#include <array>
+
 #include <glm/vec3.hpp>
 #include <tl/expected.hpp>
 
 #include "features/volumetrics/error.hpp"
+#include "features/volumetrics/phase.hpp"
 
 namespace tyndall::volumetrics {
 
@@ -30,13 +33,30 @@ struct DensityNoise {
     glm::vec3 wind_m_s{0.0F}; ///< velocity with which the pattern moves, each in [-1e3, 1e3]
 };
 
+/// sqrt(3 / (4 pi)): of the real spherical harmonics of order 1.
+inline constexpr double sh_1_constant = 0.48860251190291992;
+
 struct Medium {
     HomogeneousFog homogeneous;
     HeightFog height;
     DensityNoise noise;
     float phase_g = 0.0F;             ///< Henyey-Greenstein asymmetry, [-0.999, 0.999]; > 0 scatters forward
+    PhaseLobes phase_lobes;           ///< where there are any, they take the place of phase_g
     glm::vec3 ambient_radiance{0.0F}; ///< cd/m^2 from every direction, each in [0, 1e9]
+    /// Coefficients of order 1 of the ambient radiance in the orthonormal real spherical harmonics of the world's axes,
+    /// Y(1,-1) = c y, Y(1,0) = c z, Y(1,1) = c x with c = sqrt(3 / (4 pi)), of the direction from which the light
+    /// comes; rgb each. Nowhere may radiance be negative: c times a channel's length is at most its ambient_radiance.
+    std::array<glm::vec3, 3> ambient_sh_1{glm::vec3(0.0F), glm::vec3(0.0F), glm::vec3(0.0F)};
 };
+
+/// The phase function as lobes, phase_g being one of Henyey-Greenstein.
+[[nodiscard]] PhaseLobes phase_of(const Medium& medium);
+
+/// Euclidean length of ambient_sh_1 in each channel.
+[[nodiscard]] glm::vec3 ambient_length(const Medium& medium);
+
+/// Ambient light that fog scatters differs with the direction of view.
+[[nodiscard]] bool is_directed(const Medium& medium);
 
 /// Neither scatters nor absorbs anywhere.
 [[nodiscard]] bool is_empty(const Medium& medium);

@@ -69,6 +69,26 @@ glm::vec4 jitter(const FrameInputs& frame, std::uint32_t frames_since_cut) {
             fraction(0.5 + n * 0.5497004779019703), frame.settings.temporal.jitter ? 1.0F : 0.0F};
 }
 
+/// Ambient light scattered toward the eye: each order of its spherical harmonics times the same order of the phase
+/// function's Legendre series (Funk-Hecke), 1 and the mean cosine.
+void write_phase(const Medium& medium, gpu::VolumetricParameters& u) {
+    const PhaseLobes phase = phase_of(medium);
+    float weights = 0.0F;
+    for (const PhaseLobe& lobe : phase.all()) {
+        weights += lobe.weight;
+    }
+    for (std::uint32_t i = 0; i < phase.count; ++i) {
+        u.phase_asymmetry[static_cast<int>(i)] = phase.lobes[i].g;
+        u.phase_weight[static_cast<int>(i)] = phase.lobes[i].weight / weights;
+    }
+    u.phase = glm::vec4(static_cast<float>(steepness(phase)), 0.0F, 0.0F, 0.0F);
+    const auto order_1 = static_cast<float>(sh_1_constant * mean_cosine(phase));
+    u.ambient = glm::vec4(medium.ambient_radiance, 0.0F);
+    u.ambient_y = glm::vec4(order_1 * medium.ambient_sh_1[0], 0.0F);
+    u.ambient_z = glm::vec4(order_1 * medium.ambient_sh_1[1], 0.0F);
+    u.ambient_x = glm::vec4(order_1 * medium.ambient_sh_1[2], 0.0F);
+}
+
 } // namespace
 
 gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera, float radiance_scale) {
@@ -98,13 +118,12 @@ float radiance_scale_for(const FrameInputs& frame) {
     if (frame.settings.storage == StorageFormat::fp32) {
         return 1.0F;
     }
-    const glm::vec3& ambient = frame.medium.ambient_radiance;
+    const glm::vec3 directed = ambient_length(frame.medium);
+    const glm::vec3 ambient = frame.medium.ambient_radiance + static_cast<float>(sh_1_constant) * directed;
     double brightest = std::max({ambient.x, ambient.y, ambient.z});
     if (frame.sun) {
         const glm::vec3& sun = frame.sun->illuminance_lux;
-        const double a = std::abs(frame.medium.phase_g);
-        const double peak = (1.0 + a) / (12.566370614359172 * (1.0 - a) * (1.0 - a));
-        brightest += peak * static_cast<double>(std::max({sun.x, sun.y, sun.z}));
+        brightest += peak(phase_of(frame.medium)) * static_cast<double>(std::max({sun.x, sun.y, sun.z}));
     }
     const double largest = 32768.0; // half of fp16's, which leaves room for local lights
     return brightest > largest ? std::exp2(-static_cast<float>(std::ceil(std::log2(brightest / largest)))) : 1.0F;
@@ -171,11 +190,10 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.noise_origin = noise_origin(frame);
     u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, 0.0F, 0.0F, 0.0F);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
-    u.phase = glm::vec4(medium.phase_g, 0.0F, 0.0F, 0.0F);
+    write_phase(medium, u);
     u.temporal = temporal_parameters(frame, before, radiance_scale);
     const std::uint32_t frames_since_cut = before ? before->frames_since_cut + 1 : 0;
     u.jitter = jitter(frame, frames_since_cut);
-    u.ambient = glm::vec4(medium.ambient_radiance, 0.0F);
     if (frame.sun) {
         u.sun_direction = glm::vec4(glm::normalize(frame.sun->direction), 0.0F);
         u.sun_illuminance = glm::vec4(frame.sun->illuminance_lux, 0.0F);

@@ -1,4 +1,4 @@
-// Punctual lights and the Henyey-Greenstein phase function.
+// Punctual lights.
 #ifndef TYNDALL_SHADERS_COMMON_LIGHTS_GLSL
 #define TYNDALL_SHADERS_COMMON_LIGHTS_GLSL
 
@@ -31,16 +31,6 @@ vec3 light_irradiance_normal(GpuLight light, vec3 position, out vec3 to_light) {
         fade *= spot_cone(light.direction_radius.xyz, light.cone.xy, to_light);
     }
     return light.intensity_type.rgb * (fade / max(distance_squared, radius * radius));
-}
-
-// Henyey and Greenstein 1941, per steradian. `travel` is the unit direction in which the light travels, `to_eye` from the
-// sample to the eye: g > 0 brightens when they agree. The denominator is (1 - |g|)^2 + 4 |g| sin^2(theta / 2), with the
-// sine from the chord between the two unit vectors: 1 + g^2 - 2 g cos(theta) cancels in fp32 as |g| nears 1.
-float henyey_greenstein(float g, vec3 travel, vec3 to_eye) {
-    vec3 chord = g >= 0.0 ? travel - to_eye : travel + to_eye;
-    float a = abs(g);
-    float denominator = (1.0 - a) * (1.0 - a) + a * dot(chord, chord);
-    return (1.0 - a) * (1.0 + a) / (12.566370614 * denominator * sqrt(denominator));
 }
 
 #endif

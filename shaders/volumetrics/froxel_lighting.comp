@@ -23,10 +23,13 @@ layout(constant_id = 4) const uint cascade_count = 4;
 layout(constant_id = 5) const bool is_perspective = true;
 layout(constant_id = 6) const bool camera_stands = false; // since the frame before: history is not reprojected
 layout(constant_id = 7) const uint sun_visibility = 2;    // of slice_visibility.glsl
-layout(constant_id = 8) const uint visibility_taps = 1;
+layout(constant_id = 8) const uint visibility_taps = 1;   // 9 and 10: phase.glsl
+layout(constant_id = 11) const bool has_directed_ambient = false;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
+
+#include "volumetrics/phase.glsl"
 
 #if SUN_SHADOW
 #include "volumetrics/slice_visibility.glsl"
@@ -58,7 +61,7 @@ vec3 sun_scattering(RaySegment segment, float depth_m) {
     SUN_VISIBILITY(cascades, cascade_count, shadow_map, u.esm_exponents, size, sun_visibility, visibility_taps,
                    segment, depth_m, visibility)
 #endif
-    return u.sun_illuminance.rgb * (visibility * henyey_greenstein(u.phase.x, u.sun_direction.xyz, segment.to_eye));
+    return u.sun_illuminance.rgb * (visibility * phase_function(phase_angle(u.sun_direction.xyz, segment.to_eye)));
 }
 
 #if LIGHTS
@@ -69,12 +72,12 @@ vec3 local_scattering(uvec3 froxel, RaySegment segment) {
     for (uint word = 0u; word < clusters.block.w; ++word) {
         for (uint mask = masks[first + word]; mask != 0u; mask &= mask - 1u) {
             uint i = 32u * word + uint(findLSB(mask));
-            ADD_SCATTERED_FROM_LIGHT(lights, i, segment, u.phase.x, sum)
+            ADD_SCATTERED_FROM_LIGHT(lights, i, segment, sum)
         }
     }
 #else
     for (uint i = 0u; i < u.frame.y; ++i) {
-        ADD_SCATTERED_FROM_LIGHT(lights, i, segment, u.phase.x, sum)
+        ADD_SCATTERED_FROM_LIGHT(lights, i, segment, sum)
     }
 #endif
     return sum;
@@ -128,6 +131,10 @@ void main() {
     RaySegment segment = RaySegment(position, to_eye, (depth_m - near_m) * stretch, (far_m - depth_m) * stretch);
 
     vec3 sum = u.ambient.rgb;
+    if (has_directed_ambient) {
+        // Looking along -to_eye, forward scattering brings the light from there.
+        sum -= u.ambient_x.rgb * to_eye.x + u.ambient_y.rgb * to_eye.y + u.ambient_z.rgb * to_eye.z;
+    }
     if (has_sun) {
         sum += sun_scattering(segment, depth_m);
     }

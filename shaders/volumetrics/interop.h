@@ -26,11 +26,16 @@ struct VolumetricParameters {
     vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude, 0 to 1
     vec4 noise_cells;     // x: cells per metre; yzw 0
     vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0
-    vec4 phase;           // x: Henyey-Greenstein g; yzw 0
+    vec4 phase;           // x: bound of the change of its logarithm, 1/rad; yzw 0
+    vec4 phase_asymmetry; // g or k of each lobe
+    vec4 phase_weight;    // of each lobe, of sum 1
     vec4 temporal;        // x: steady weight of a new frame; y: oldest age, frames; z: history's radiance times z is in
                           // this frame's scale; w 0
     vec4 jitter;          // xyz: this frame's offset in [0, 1); w: 0 samples the centre of each froxel
     vec4 ambient;         // rgb radiance from every direction
+    vec4 ambient_x;       // rgb: what scattering leaves of the part of ambient radiance that is proportional to the x of
+    vec4 ambient_y;       // its direction; the same of y and z
+    vec4 ambient_z;
     vec4 sun_direction;   // xyz: unit direction in which it travels, render space
     vec4 sun_illuminance; // rgb lux
     vec4 esm_exponents;   // k of each cascade, per unit of shadow depth

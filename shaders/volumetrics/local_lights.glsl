@@ -3,6 +3,7 @@
 #define TYNDALL_SHADERS_VOLUMETRICS_LOCAL_LIGHTS_GLSL
 
 #include "common/lights.glsl"
+#include "volumetrics/phase.glsl"
 #include "volumetrics/ray_segment.glsl"
 
 // atan(y, x) for y > 0, to 8e-7: Chebyshev fit of atan(r) / r on [0, 1] in r^2.
@@ -22,19 +23,15 @@ float sine(float x) {
     return x * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0 - s * (1.0 / 362880.0)))));
 }
 
-// Henyey-Greenstein by the squared chord between the directions to the light and to the eye: 2 - 2 cos(theta) for
-// g >= 0, 2 + 2 cos(theta) for g < 0, of which peak = |g|.
-float henyey_greenstein_of_chord(float peak, float chord_squared) {
-    float spread = (1.0 - peak) * (1.0 - peak) + peak * chord_squared;
-    return (1.0 - peak) * (1.0 + peak) / (12.566370614 * spread * sqrt(spread));
-}
+// Where the light's direction makes the angle phi with the ray's normal, the cosine of scattering is -sin(phi).
+float phase_of_sine(float s) { return phase_function(PhaseAngle(2.0 + 2.0 * s, 2.0 - 2.0 * s)); }
 
 // Mean over the segment of phase function / d^2. With h the light's distance from the ray and t = h tan(phi) along it,
 // dt / d^2 = dphi / h: exact for an isotropic phase function, where a sample of 1 / d^2 would be several times too
 // bright beside the light and flicker as either moves. Elsewhere the phase function, p(-sin(phi)), is integrated over
 // phi; where it hardly changes, the segment being seen from the light under a small angle, its value at the sample
 // stands for it. `d` leads from the sample to the light, `to_light` is of unit length.
-float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float radius_m, float g) {
+float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float radius_m) {
     float along = -dot(d, segment.to_eye); // of the light's foot on the ray, from the sample
     vec3 offset = d + along * segment.to_eye;
     float h_squared = max(dot(offset, offset), radius_m * radius_m);
@@ -43,21 +40,17 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
     float b = segment.ahead_m - along;
     float length_m = max(b - a, 1e-6);
     float angle = positive_atan(h * length_m, h_squared + a * b);
-    float peak = abs(g);
-    float change = angle * 3.0 * peak / (1.0 - peak * peak); // at most, of the phase function's logarithm
+    float change = angle * u.phase.x; // at most, of the phase function's logarithm
     float phase = 0.0;
     if (change < 0.7) {
-        vec3 chord = g >= 0.0 ? to_light + segment.to_eye : to_light - segment.to_eye;
-        phase = henyey_greenstein_of_chord(peak, dot(chord, chord));
+        phase = phase_function(phase_angle(-to_light, segment.to_eye));
     } else {
         float panels = min(floor(0.5 * change) + 1.0, 16.0);
         float panel = angle / panels;
         float middle = 1.57079633 - positive_atan(h, a) + 0.5 * panel; // phi of the first panel's
-        float twice = g >= 0.0 ? 2.0 : -2.0;
         for (float i = 0.0; i < panels; i += 1.0) {
             // Gauss-Legendre, two nodes a panel.
-            phase += henyey_greenstein_of_chord(peak, 2.0 + twice * sine(middle - 0.28867513 * panel)) +
-                     henyey_greenstein_of_chord(peak, 2.0 + twice * sine(middle + 0.28867513 * panel));
+            phase += phase_of_sine(sine(middle - 0.28867513 * panel)) + phase_of_sine(sine(middle + 0.28867513 * panel));
             middle += panel;
         }
         phase *= 0.5 / panels;
@@ -67,7 +60,7 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
 
 // Adds the in-scattered radiance per scattering coefficient from light `index`. Window and cone are taken at the
 // sample. Exactly 0 beyond the light's range. A macro, since a buffer cannot be passed to a function.
-#define ADD_SCATTERED_FROM_LIGHT(lights, index, segment, g, sum)                                                       \
+#define ADD_SCATTERED_FROM_LIGHT(lights, index, segment, sum)                                                          \
     {                                                                                                                  \
         vec4 position_range = lights[index].position_range;                                                            \
         vec3 d = position_range.xyz - segment.position;                                                                \
@@ -80,7 +73,7 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
             float cone = spot_cone(direction_radius.xyz, lights[index].cone.xy, to_light);                             \
             fade *= intensity_type.w > 0.5 ? cone : 1.0;                                                               \
             float radius_m = max(direction_radius.w, smallest_light_radius_m);                                         \
-            sum += intensity_type.rgb * (fade * scattered_inverse_square(segment, d, to_light, radius_m, g));          \
+            sum += intensity_type.rgb * (fade * scattered_inverse_square(segment, d, to_light, radius_m));             \
         }                                                                                                              \
     }
 

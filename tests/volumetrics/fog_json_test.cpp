@@ -116,6 +116,47 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
               "temporal.new_frame_weight must be between 0.001 and 1, not 0.");
 }
 
+TEST(FogJson, ReadsPhaseLobesAndDirectedAmbient) {
+    const auto fog = parse_fog_json(R"({
+        "phase": {"lobes": [{"function": "cornette_shanks", "g": 0.8, "weight": 0.7},
+                            {"function": "rayleigh", "weight": 0.3}]},
+        "ambient": {"radiance": [1, 1, 2], "sh_1": [[1, 0, 2], [0, -1, 0], [0, 0, 1]]}})");
+    ASSERT_TRUE(fog) << fog.error().message;
+    const PhaseLobes& phase = fog->medium.phase_lobes;
+    ASSERT_EQ(phase.count, 2U);
+    EXPECT_EQ(phase.lobes[0].function, PhaseFunction::cornette_shanks);
+    EXPECT_EQ(phase.lobes[0].g, 0.8F);
+    EXPECT_EQ(phase.lobes[0].weight, 0.7F);
+    EXPECT_EQ(phase.lobes[1].function, PhaseFunction::rayleigh);
+    EXPECT_EQ(phase.lobes[1].weight, 0.3F);
+    EXPECT_EQ(fog->medium.ambient_sh_1[0], glm::vec3(1, 0, 2));
+    EXPECT_EQ(fog->medium.ambient_sh_1[1], glm::vec3(0, -1, 0));
+    EXPECT_EQ(fog->medium.ambient_sh_1[2], glm::vec3(0, 0, 1));
+}
+
+TEST(FogJson, ImpossiblePhasesAndAmbientsNameKeyAndRange) {
+    EXPECT_EQ(refusal(R"({"phase": {"g": 2}})"), "phase.g must be between -0.999 and 0.999, not 2.");
+    EXPECT_EQ(refusal(R"({"phase": {"lobes": [{"g": 2}]}})"),
+              "phase.lobes[0].g must be between -0.999 and 0.999, not 2.");
+    EXPECT_EQ(refusal(R"({"phase": {"lobes": [{}, {"weight": -1}]}})"),
+              "phase.lobes[1].weight must be between 0 and 1, not -1.");
+    EXPECT_EQ(refusal(R"({"phase": {"lobes": [{"weight": 0}]}})"),
+              "The sum of phase.lobes' weights must be between 0.001 and 4, not 0.");
+    EXPECT_EQ(refusal(R"({"phase": {"lobes": []}})"), "phase.lobes must be an array of 1 to 4 objects.");
+    EXPECT_EQ(refusal(R"({"phase": {"lobes": [{}, {}, {}, {}, {}]}})"),
+              "phase.lobes must be an array of 1 to 4 objects.");
+    EXPECT_EQ(refusal(R"({"phase": {"lobes": [{"asymmetry": 1}]}})"),
+              "phase.lobes[0].asymmetry is not a key of the fog file.");
+    EXPECT_EQ(refusal(R"({"phase": {"lobes": [{"function": "mie"}]}})"),
+              R"(phase.lobes[0].function must be one of "isotropic", "rayleigh", "henyey_greenstein", "schlick", )"
+              R"("cornette_shanks".)");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 0.5, "lobes": [{}]}})"),
+              "phase.lobes takes the place of phase.g, so that only one may be given.");
+    EXPECT_EQ(refusal(R"({"ambient": {"sh_1": [[0, 0, 0], [0, 0, 0], [0, 1, 0]]}})").substr(0, 44),
+              "The length of ambient.sh_1 in channel 1 (at ");
+    EXPECT_EQ(refusal(R"({"ambient": {"sh_1": [1, 2, 3]}})"), "ambient.sh_1[0] must be an array of 3 numbers.");
+}
+
 TEST(FogJson, NumbersThatSinglePrecisionLacksAreRefused) {
     EXPECT_EQ(refusal(R"({"phase": {"g": 1e60}})"), "phase.g must be a finite number of single precision.");
     EXPECT_EQ(refusal(R"({"phase": {"g": 1e999}})").substr(0, 30), "The fog file is not valid JSON");

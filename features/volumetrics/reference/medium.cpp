@@ -22,8 +22,31 @@ double henyey_greenstein(double g, double cos_theta) {
     return (1.0 - g * g) / (4.0 * std::numbers::pi * denominator * std::sqrt(denominator));
 }
 
+double phase(const PhaseLobe& lobe, double cos_theta) {
+    const double g = static_cast<double>(lobe.g);
+    const double whole = 4.0 * std::numbers::pi;
+    switch (lobe.function) {
+    case PhaseFunction::rayleigh: return 0.75 * (1.0 + cos_theta * cos_theta) / whole;
+    case PhaseFunction::henyey_greenstein: return henyey_greenstein(g, cos_theta);
+    case PhaseFunction::schlick: {
+        const double spread = (1.0 - g) + g * (1.0 - cos_theta);
+        return (1.0 - g * g) / (whole * spread * spread);
+    }
+    case PhaseFunction::cornette_shanks:
+        return 1.5 * (1.0 + cos_theta * cos_theta) / (2.0 + g * g) * henyey_greenstein(g, cos_theta);
+    case PhaseFunction::isotropic: break;
+    }
+    return 1.0 / whole;
+}
+
 double phase(const Medium& medium, double cos_theta) {
-    return henyey_greenstein(static_cast<double>(medium.phase_g), cos_theta);
+    double sum = 0.0;
+    double weights = 0.0;
+    for (const PhaseLobe& lobe : phase_of(medium).all()) {
+        sum += static_cast<double>(lobe.weight) * phase(lobe, cos_theta);
+        weights += static_cast<double>(lobe.weight);
+    }
+    return sum / weights;
 }
 
 double height_integral(double falloff_per_m, double from_m, double to_m, double length_m) {

@@ -13,6 +13,9 @@ namespace tyndall::volumetrics::reference {
 /// Henyey and Greenstein 1941, per steradian. `cos_theta`: 1 is forward scattering; g in (-1, 1).
 [[nodiscard]] double henyey_greenstein(double g, double cos_theta);
 
+/// One lobe, whatever its weight.
+[[nodiscard]] double phase(const PhaseLobe& lobe, double cos_theta);
+
 /// The medium's phase function.
 [[nodiscard]] double phase(const Medium& medium, double cos_theta);
 
