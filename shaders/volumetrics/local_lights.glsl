@@ -50,7 +50,8 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
         float middle = 1.57079633 - positive_atan(h, a) + 0.5 * panel; // phi of the first panel's
         for (float i = 0.0; i < panels; i += 1.0) {
             // Gauss-Legendre, two nodes a panel.
-            phase += phase_of_sine(sine(middle - 0.28867513 * panel)) + phase_of_sine(sine(middle + 0.28867513 * panel));
+            phase += phase_of_sine(sine(middle - 0.28867513 * panel)) +
+                     phase_of_sine(sine(middle + 0.28867513 * panel));
             middle += panel;
         }
         phase *= 0.5 / panels;
