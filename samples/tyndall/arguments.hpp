@@ -79,6 +79,8 @@ struct PrecisionConfiguration {
     volumetrics::SunVisibility visibility = volumetrics::Settings{}.visibility.method;
     Size grid{volumetrics::Settings{}.grid.width, volumetrics::Settings{}.grid.height}; ///< columns of froxels
     std::uint32_t slices = volumetrics::Settings{}.grid.slices;
+    volumetrics::StorageFormat storage = volumetrics::Settings{}.storage;
+    std::uint32_t cascade_texels = 1024; ///< of a side of the sun's shadow cascades
 };
 
 /// Every combination of the lists is measured.
@@ -92,6 +94,7 @@ struct PrecisionArguments {
     std::vector<std::uint32_t> slices{PrecisionConfiguration{}.slices};
     std::optional<double> error;                 ///< choose the cheapest within this relative L2 error
     std::optional<double> budget_ms;             ///< choose the most exact that takes no longer, fog's passes
+    bool causes = false;                         ///< measure too what removing one cause of error at a time leaves
     bool airlight = false;                       ///< surfaces are black: the fog alone is judged
     std::optional<std::filesystem::path> folder; ///< for precision.csv and precision.json
     std::string device;

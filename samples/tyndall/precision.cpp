@@ -116,6 +116,8 @@ Expected<std::vector<PrecisionRow>> measure(const PrecisionArguments& arguments,
     info.fog->settings.grid.width = configuration.grid.width;
     info.fog->settings.grid.height = configuration.grid.height;
     info.fog->settings.grid.slices = configuration.slices;
+    info.fog->settings.storage = configuration.storage;
+    info.renderer.cascades.resolution = configuration.cascade_texels;
     info.profile = true;
     if (const auto valid = volumetrics::validate(info.fog->settings); !valid) {
         return tl::unexpected(valid.error().message);
@@ -179,7 +181,7 @@ std::vector<PrecisionConfiguration> configurations(const PrecisionArguments& arg
         for (const volumetrics::SunVisibility visibility : arguments.visibilities) {
             for (const Size& grid : arguments.grids) {
                 for (const std::uint32_t slices : arguments.slices) {
-                    all.push_back({integrator, visibility, grid, slices});
+                    all.push_back({.integrator = integrator, .visibility = visibility, .grid = grid, .slices = slices});
                 }
             }
         }
@@ -255,6 +257,60 @@ Expected<std::string> choose_and_run(const PrecisionArguments& arguments, const 
     return text;
 }
 
+/// A cause of error, and the configuration with far less of it.
+struct Cause {
+    const char* name;
+    void (*remove)(PrecisionConfiguration& configuration);
+};
+constexpr std::array causes{
+    Cause{"none removed", [](PrecisionConfiguration&) {}},
+    Cause{"4 times the slices", [](PrecisionConfiguration& c) { c.slices = std::min(512U, 4 * c.slices); }},
+    Cause{"4 times the columns",
+          [](PrecisionConfiguration& c) {
+              c.grid = {std::min(1024U, 2 * c.grid.width), std::min(1024U, 2 * c.grid.height)};
+          }},
+    Cause{"exact lit fraction",
+          [](PrecisionConfiguration& c) { c.visibility = volumetrics::SunVisibility::lit_fraction; }},
+    Cause{"16 times the shadow map", [](PrecisionConfiguration& c) { c.cascade_texels *= 4; }},
+    Cause{"fp32 storage", [](PrecisionConfiguration& c) { c.storage = volumetrics::StorageFormat::fp32; }},
+    Cause{"quadratic integrator",
+          [](PrecisionConfiguration& c) { c.integrator = volumetrics::Integrator::exponential_quadratic; }}};
+
+/// The first configuration's error with one cause removed at a time, of pictures and of truths.
+Expected<std::string> list_causes(const PrecisionArguments& arguments, const Bench& bench, Progress& progress) {
+    std::string text = bench.scene.name + ", what is left without one cause of error, frame 1 and " +
+                       std::to_string(arguments.frames) + ":\n";
+    for (const Cause& cause : causes) {
+        PrecisionConfiguration configuration = configurations(arguments).front();
+        cause.remove(configuration);
+        progress.show(bench.scene.name + ", " + cause.name);
+        const auto rows = measure(arguments, bench, configuration);
+        if (!rows) {
+            return tl::unexpected(rows.error());
+        }
+        std::array<char, 160> line{};
+        const auto add = [&](const std::string& name, const std::string& physics) {
+            std::snprintf(line.data(), line.size(), "  %-32s", name.c_str());
+            text += line.data();
+            for (const PrecisionRow& row : *rows) {
+                if (row.physics == physics) {
+                    std::snprintf(line.data(), line.size(), " %9.3f%%", 100.0 * row.error.relative_l2);
+                    text += line.data();
+                }
+            }
+            std::snprintf(line.data(), line.size(), "   fog %8.2f ms\n", rows->front().fog_ms);
+            text += line.data();
+        };
+        add(cause.name, truths.front().name);
+        if (&cause == &causes.front()) {
+            for (const TruthImage& truth : std::span(bench.truths).subspan(1)) {
+                add(truth.physics, truth.physics);
+            }
+        }
+    }
+    return text;
+}
+
 } // namespace
 
 std::vector<std::string> precision_scene_names() {
@@ -286,7 +342,7 @@ int run_precision(const PrecisionArguments& arguments) {
         return fail(arguments.device.empty() ? exit_failed : exit_bad_input, device.error().message);
     }
     std::vector<PrecisionRow> rows;
-    std::string choices;
+    std::string remarks; // choices and causes
     {
         Progress progress;
         const reference::ImageSize size{arguments.size.width, arguments.size.height};
@@ -313,7 +369,14 @@ int run_precision(const PrecisionArguments& arguments) {
             if (!chosen) {
                 return fail(exit_failed, chosen.error());
             }
-            choices += *chosen;
+            remarks += *chosen;
+            if (arguments.causes) {
+                const auto listed = list_causes(arguments, bench, progress);
+                if (!listed) {
+                    return fail(exit_failed, listed.error());
+                }
+                remarks += *listed;
+            }
         }
     }
     mark_front(rows);
@@ -327,7 +390,7 @@ int run_precision(const PrecisionArguments& arguments) {
         }
     }
     const std::string text =
-        arguments.json ? to_json(rows, arguments.size, device_text) : to_table(rows, device_text) + choices;
+        arguments.json ? to_json(rows, arguments.size, device_text) : to_table(rows, device_text) + remarks;
     std::fputs(text.c_str(), stdout);
     return exit_ok;
 }

@@ -166,12 +166,21 @@ TEST(Precision, SlabIsExactAndTheFilesHoldWhatIsPrinted) {
 TEST(Precision, ChoosesAndRunsTheChoice) {
     const ToolRun run =
         run_tool({"precision", "--scene", "slab", "--size", "32x18", "--frames", "2", "--slices", "8,64",
-                  "--integrator", "euler,exponential", "--error", "0.5%", "--budget", "0.000001ms"});
+                  "--integrator", "euler,exponential", "--error", "0.5%", "--budget", "0.000001ms", "--causes"});
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const std::size_t choice = run.output.find("slab, the cheapest within 0.5 %: exponential, ");
     ASSERT_NE(choice, std::string::npos) << run.output;
     EXPECT_NE(run.output.find("; run again: ", choice), std::string::npos) << run.output;
     EXPECT_NE(run.output.find("slab, the most exact within 1e-06 ms: unreachable"), std::string::npos) << run.output;
+    // Euler's error in a slab is that of its slices and of the integrator.
+    const auto left = [&](const std::string& cause) {
+        const std::size_t at = run.output.find("  " + cause + " ");
+        return at == std::string::npos ? -1.0 : std::strtod(run.output.c_str() + at + 34, nullptr);
+    };
+    EXPECT_GT(left("none removed"), 0.5);
+    EXPECT_LT(left("4 times the slices"), 0.5 * left("none removed"));
+    EXPECT_LT(left("quadratic integrator"), 0.1 * left("none removed"));
+    EXPECT_NEAR(left("fp32 storage"), left("none removed"), 0.1 * left("none removed"));
 }
 
 TEST(Precision, RefusesWhatItCannotMeasure) {
