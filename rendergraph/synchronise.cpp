@@ -11,17 +11,6 @@
 
 namespace tyndall::rg::stages {
 namespace {
-/// Can a queue of these capabilities have all of these stages?
-bool queue_has(std::uint8_t capabilities, VkPipelineStageFlags2 stages) {
-    constexpr VkPipelineStageFlags2 on_any_queue = VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_HOST_BIT |
-                                                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT |
-                                                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
-    constexpr VkPipelineStageFlags2 of_compute =
-        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT;
-    const VkPipelineStageFlags2 there = (capabilities & can_compute) != 0 ? on_any_queue | of_compute : on_any_queue;
-    return (capabilities & can_graphics) != 0 || (stages & ~there) == 0;
-}
-
 class Synchroniser {
 public:
     Synchroniser(const GraphDesc& graph, const QueueTopology& topology, const Cells& cells, const Schedule& schedule,
@@ -125,10 +114,18 @@ private:
     void visit_cell(std::uint32_t resource, std::uint32_t cell, Uses uses, const Before& entry) {
         Before before = entry;
         const bool untouched = uses.empty();
+        before.written = (entry.host_access & any_write) != 0;
         while (!uses.empty()) {
             const Group group = first_group(uses);
-            connect(resource, cell, before, group);
-            before = state_after(group);
+            Before after = state_after(group);
+            const bool keeps = keeps_state(resource, before, group);
+            after.written = before.written || !keeps;
+            if (keeps && reads_like_the_host(before, group)) {
+                after.host_stages = before.host_stages; // whoever writes next comes after both
+            } else {
+                connect(resource, cell, before, group);
+            }
+            before = after;
             uses = uses.subspan(group.uses.size());
         }
         if (!untouched) {
@@ -137,8 +134,26 @@ private:
             const Use* last = &uses_of(resource).back(); // it takes the part along
             const Group along{{&last, 1}, false, false, graph_.imports[graph_.resources[resource].import].final_layout};
             connect(resource, cell, before, along);
-            leave(resource, cell, state_after(along));
+            Before after = state_after(along);
+            after.written = before.written || !keeps_state(resource, before, along);
+            leave(resource, cell, after);
         }
+    }
+
+    /// What is left as it is: no write, no other layout, no other owner.
+    [[nodiscard]] bool keeps_state(std::uint32_t resource, const Before& before, const Group& group) const {
+        const auto family = [&](const Use* use) { return topology_.queues[use->queue].family; };
+        const std::uint32_t owner = before.uses.empty() ? before.host_family : family(before.uses.back());
+        const bool same_owner =
+            schedule_.concurrent[resource] || owner == VK_QUEUE_FAMILY_IGNORED ||
+            std::all_of(group.uses.begin(), group.uses.end(), [&](const Use* use) { return family(use) == owner; });
+        return !group.writes && before.layout == group.layout && same_owner;
+    }
+    /// The host read last, on the group's own queue, and the group reads what is as it wants it: nothing to do.
+    [[nodiscard]] bool reads_like_the_host(const Before& before, const Group& group) const {
+        const bool host_read = before.uses.empty() && before.host_stages != 0 && (before.host_access & any_write) == 0;
+        return host_read && !full_barriers_ &&
+               std::all_of(group.uses.begin(), group.uses.end(), [](const Use* use) { return use->queue == 0; });
     }
 
     /// All dependencies between `before` and `group`, one for each queue of the group.
@@ -319,12 +334,14 @@ private:
         const Use& last = *before.uses.back();
         VkPipelineStageFlags2 stages = 0;
         VkAccessFlags2 access = 0;
+        bool signals = false;
         Hazard hazard = Hazard::import_exit;
         if (desc.import != none && graph_.imports[desc.import].has_final) {
             const ImportDesc& import = graph_.imports[desc.import];
             after.layout = import.final_layout;
             stages = import.final_stages;
             access = import.final_access;
+            signals = import.signals_semaphore;
             family = import.final_family;
         } else if (desc.has_history && desc.kind == ResourceKind::image) {
             after.layout = out_.resting_layout[resource];
@@ -337,7 +354,9 @@ private:
         const std::uint32_t own_family = topology_.queues[last.queue].family;
         const bool transfers =
             family != VK_QUEUE_FAMILY_IGNORED && family != own_family && !schedule_.concurrent[resource];
-        if (!transition && stages == 0 && !transfers) {
+        const bool reads_what_was_there = hazard == Hazard::import_exit && !before.written && !signals &&
+                                          (access & any_write) == 0 && !full_barriers_;
+        if (!transition && !transfers && (stages == 0 || reads_what_was_there)) {
             return;
         }
         CellDependency made{{}, exit_slot_, none, false, {}};

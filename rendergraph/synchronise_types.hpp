@@ -11,6 +11,17 @@ inline constexpr VkAccessFlags2 any_write =
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT |
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
 
+/// Can a queue of these capabilities have all of these stages?
+[[nodiscard]] inline bool queue_has(std::uint8_t capabilities, VkPipelineStageFlags2 stages) {
+    constexpr VkPipelineStageFlags2 on_any_queue = VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_HOST_BIT |
+                                                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT |
+                                                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
+    constexpr VkPipelineStageFlags2 of_compute =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT;
+    const VkPipelineStageFlags2 there = (capabilities & can_compute) != 0 ? on_any_queue | of_compute : on_any_queue;
+    return (capabilities & can_graphics) != 0 || (stages & ~there) == 0;
+}
+
 /// Uses of one cell that need nothing of each other.
 struct Group {
     Uses uses;
@@ -28,7 +39,9 @@ struct Before {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
     Hazard entry = Hazard::frame_entry;
     bool in_frame = false; ///< `uses` are of this very resource
-    bool content = true;   ///< there is content that a transition must keep
+    bool written =
+        false; ///< or moved to another layout or owner, in this frame; or by the host, ordered by barriers alone
+    bool content = true; ///< there is content that a transition must keep
     std::uint32_t alias_of = none;
 };
 

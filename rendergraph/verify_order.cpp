@@ -109,8 +109,7 @@ void Order::source_scope(std::uint32_t queue, StageSet stages, SourceScope& out)
     });
     for_each_stage(stages, [&](std::uint32_t stage) { // submission order, up to the command before this one
         out.ordered[std::size_t{queue} * stage_count + stage] = sequence_[queue] - 1;
-        // What the host did on the device it submitted to the first queue; what it did itself all queues come after.
-        if (queue == 0 || stage == host_stage_number) {
+        if (host_comes_before(queue, stage)) {
             out.ordered[std::size_t{host_queue()} * stage_count + stage] = sequence_[host_queue()];
         }
     });
@@ -130,6 +129,9 @@ Clock Order::signal(std::uint32_t queue) const {
     }
     for (std::uint32_t stage = 0; stage < stage_count; ++stage) {
         out[std::size_t{queue} * stage_count + stage] = sequence_[queue];
+        if (host_comes_before(queue, stage)) {
+            out[std::size_t{host_queue()} * stage_count + stage] = sequence_[host_queue()];
+        }
     }
     return out;
 }

@@ -44,7 +44,7 @@ struct SourceScope {
 /// O(stages of a barrier x queues x stages) an operation, whatever the number of commands.
 class Order {
 public:
-    /// One more queue than the plan has: what the host did before the frame, on whatever queue.
+    /// One more queue than the plan has: what the host did before the frame.
     explicit Order(std::uint32_t queues);
 
     [[nodiscard]] std::uint32_t host_queue() const { return queues_; }
@@ -69,6 +69,10 @@ public:
     [[nodiscard]] bool visible(const Point& point, std::uint32_t queue, StageSet stage) const;
 
 private:
+    /// What the host did on the device it submitted to the first queue; what it did itself all queues come after.
+    [[nodiscard]] static bool host_comes_before(std::uint32_t queue, std::uint32_t stage) {
+        return queue == 0 || stage == host_stage_number;
+    }
     [[nodiscard]] std::size_t row(std::uint32_t queue, std::uint32_t stage) const {
         return (std::size_t{queue} * stage_count + stage) * width_;
     }

@@ -16,15 +16,7 @@ public:
         for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
             const std::uint32_t import = graph_.resources[r].import;
             if (import != none && graph_.imports[import].initial_stages != 0) {
-                const ImportDesc& desc = graph_.imports[import];
-                const Touch touch{none,
-                                  r,
-                                  part_of(graph_.resources[r], {}, {}),
-                                  desc.initial_stages,
-                                  desc.initial_access,
-                                  (desc.initial_access & writes_of_memory) != 0,
-                                  none};
-                follow_parts(touch, 0, none);
+                follow_host(r, graph_.imports[import]);
             }
         }
         for (std::size_t c = 0; c < commands_.size(); ++c) {
@@ -41,6 +33,24 @@ public:
     }
 
 private:
+    /// What it did on the device it submitted to the first queue; what it did itself came before everything.
+    void follow_host(std::uint32_t resource, const ImportDesc& import) {
+        const auto follow_stages = [&](VkPipelineStageFlags2 stages, std::uint32_t queue) {
+            if (stages != 0) {
+                const Touch touch{none,
+                                  resource,
+                                  part_of(graph_.resources[resource], {}, {}),
+                                  stages,
+                                  import.initial_access,
+                                  (import.initial_access & writes_of_memory) != 0,
+                                  none};
+                follow_parts(touch, 0, queue);
+            }
+        };
+        follow_stages(import.initial_stages & ~VK_PIPELINE_STAGE_2_HOST_BIT, 0);
+        follow_stages(import.initial_stages & VK_PIPELINE_STAGE_2_HOST_BIT, none);
+    }
+
     /// The parts of a touch that later touches and barriers tell apart.
     void follow_parts(const Touch& touch, std::size_t first, std::uint32_t queue) {
         for (const Part& piece : pieces_of(graph_, touch.resource, touch.part)) {
