@@ -390,12 +390,17 @@ private:
             });
     }
 
+    /// What the passes of the plan wrote for others; what only another form would have written may be anything.
     void check_what_is_left() {
+        std::vector<bool> kept(graph_.passes.size(), false);
+        for (const PlannedPass& planned : plan_.passes) {
+            kept[planned.pass] = true;
+        }
         for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
             const ResourceDesc& desc = graph_.resources[r];
             const bool leaves = desc.has_history || (desc.import != none && graph_.imports[desc.import].has_final);
             for (const AccessDesc& access : graph_.accesses) {
-                if (!leaves || access.resource != r || !is_write(access.direction)) {
+                if (!leaves || access.resource != r || !is_write(access.direction) || !kept[access.pass]) {
                     continue;
                 }
                 for (const std::uint32_t cell :
