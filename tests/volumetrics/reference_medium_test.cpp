@@ -25,6 +25,39 @@ TEST(ReferenceMedium, PhaseIntegratesToOne) {
     EXPECT_GT(henyey_greenstein(0.5, 1.0), henyey_greenstein(0.5, -1.0)); // g > 0 scatters forward
 }
 
+TEST(ReferenceMedium, DirectedAmbientEqualsTheSumOverTheSphere) {
+    Medium medium;
+    medium.ambient_radiance = {2.0F, 3.0F, 4.0F};
+    medium.ambient_sh_1 = {glm::vec3(1.0F, 0.0F, 2.0F), glm::vec3(0.5F, -1.0F, 0.0F), glm::vec3(0.0F, 2.0F, -3.0F)};
+    medium.phase_lobes.lobes = {PhaseLobe{PhaseFunction::cornette_shanks, 0.7F, 0.8F},
+                                PhaseLobe{PhaseFunction::schlick, -0.4F, 0.2F}};
+    medium.phase_lobes.count = 2;
+    const glm::dvec3 view = glm::normalize(glm::dvec3(0.3, -0.5, 0.8));
+    glm::dvec3 sum(0.0);
+    constexpr int rings = 1000;
+    constexpr int sectors = 500;
+    for (int i = 0; i < rings; ++i) {
+        for (int k = 0; k < sectors; ++k) {
+            const double y = -1.0 + (i + 0.5) * 2.0 / rings;
+            const double around = (k + 0.5) * 2.0 * std::numbers::pi / sectors;
+            const double r = std::sqrt(1.0 - y * y);
+            const glm::dvec3 from(r * std::cos(around), y, r * std::sin(around));
+            const glm::dvec3 radiance =
+                glm::dvec3(medium.ambient_radiance) + 0.4886025119 * (from.y * glm::dvec3(medium.ambient_sh_1[0]) +
+                                                                      from.z * glm::dvec3(medium.ambient_sh_1[1]) +
+                                                                      from.x * glm::dvec3(medium.ambient_sh_1[2]));
+            // The light travels along -from, toward the eye leads -view.
+            sum += radiance * phase(medium, glm::dot(from, view)) * (4.0 * std::numbers::pi / rings / sectors);
+        }
+    }
+    const glm::dvec3 found = scattered_ambient(medium, view);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(found[c], sum[c], 1e-4 * sum[c]);
+    }
+    medium.ambient_sh_1 = {};
+    EXPECT_EQ(scattered_ambient(medium, view), glm::dvec3(2.0, 3.0, 4.0));
+}
+
 TEST(ReferenceMedium, OpticalDepthEqualsTheSum) {
     Medium medium;
     medium.homogeneous.extinction_per_m = 0.03F;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "features/volumetrics/reference/noise.hpp"
+#include "features/volumetrics/reference/quadrature.hpp"
 
 namespace tyndall::volumetrics::reference {
 namespace {
@@ -47,6 +48,22 @@ double phase(const Medium& medium, double cos_theta) {
         weights += static_cast<double>(lobe.weight);
     }
     return sum / weights;
+}
+
+glm::dvec3 scattered_ambient(const Medium& medium, const glm::dvec3& direction) {
+    const auto& [y, z, x] = medium.ambient_sh_1;
+    const glm::dvec3 order_1 =
+        std::sqrt(0.75 / std::numbers::pi) *
+        (direction.y * glm::dvec3(y) + direction.z * glm::dvec3(z) + direction.x * glm::dvec3(x));
+    if (order_1 == glm::dvec3(0.0)) {
+        return glm::dvec3(medium.ambient_radiance);
+    }
+    const std::array<Interval, 2> halves{Interval{-1.0, 0.0}, Interval{0.0, 1.0}};
+    const auto weighted = [&](double cosine) {
+        return glm::dvec3(2.0 * std::numbers::pi * cosine * phase(medium, cosine));
+    };
+    const double mean_cosine = integrate(weighted, halves, {1e-9, 1e-9}).value.x;
+    return glm::dvec3(medium.ambient_radiance) + mean_cosine * order_1;
 }
 
 double height_integral(double falloff_per_m, double from_m, double to_m, double length_m) {

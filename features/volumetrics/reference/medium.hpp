@@ -19,6 +19,11 @@ namespace tyndall::volumetrics::reference {
 /// The medium's phase function.
 [[nodiscard]] double phase(const Medium& medium, double cos_theta);
 
+/// What the medium scatters of its ambient light toward the origin of a ray of this unit direction, per unit of
+/// scattering coefficient: the light from direction w is a + c (w.y s0 + w.z s1 + w.x s2), c = sqrt(3 / (4 pi)), of
+/// which the sphere's integral against the phase function keeps the mean cosine's part of order 1 (Funk and Hecke).
+[[nodiscard]] glm::dvec3 scattered_ambient(const Medium& medium, const glm::dvec3& direction);
+
 /// Integral of e^(-falloff max(0, y)) along a straight way of `length_m` from height `from_m` to `to_m`, both above the
 /// base of the fog. In metres.
 [[nodiscard]] double height_integral(double falloff_per_m, double from_m, double to_m, double length_m);

@@ -96,7 +96,7 @@ private:
     }
 
     void add_ambient() {
-        const glm::dvec3 ambient(scene_.medium.ambient_radiance);
+        const glm::dvec3 ambient = scattered_ambient(scene_.medium, ray_.direction);
         if (largest(ambient) > 0.0) {
             const auto integrand = [&](double t) { return ambient * seen(t); };
             sum_ += integral({Interval{0.0, path_.end()}}, {}, std::identity(), integrand);
