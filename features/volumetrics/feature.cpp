@@ -94,9 +94,9 @@ rg::QueueWish Feature::State::wish() const {
 tl::expected<void, Error> Feature::State::prepare_programs() {
     const GridSettings& grid = frame->inputs.settings.grid;
     const Medium& medium = frame->inputs.medium;
-    const std::array<std::uint32_t, 4> media{medium.homogeneous.extinction_per_m > 0.0F,
+    const std::array<std::uint32_t, 5> media{medium.homogeneous.extinction_per_m > 0.0F,
                                              medium.height.extinction_per_m > 0.0F, medium.noise.amplitude > 0.0F,
-                                             is_perspective(frame->inputs.camera)};
+                                             is_perspective(frame->inputs.camera), frame->parameters.frame.z > 0};
     auto density =
         pipelines.compute(density_injection_shader(frame->inputs.settings.storage), row_group(grid.width), media);
     if (!density) {
@@ -204,6 +204,9 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
 
     if (frame.inputs.medium.noise.amplitude <= 0.0F) {
         state.omit("density noise", "its amplitude is 0");
+    }
+    if (frame.parameters.frame.z == 0) {
+        state.omit("local volumes", "there is none");
     }
     state.declare_density(graph);
     if (is_clustered(frame.lights)) {

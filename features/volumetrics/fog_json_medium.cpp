@@ -21,6 +21,36 @@ void read_lobes(Section& phase, PhaseLobes& lobes, std::optional<Error>& error) 
     });
 }
 
+void read_volume(Section& s, LocalVolume& volume) {
+    enum class Shape : std::uint8_t { box, ellipsoid, sphere };
+    Shape shape = Shape::box;
+    s.read("shape", shape, {{"box", Shape::box}, {"ellipsoid", Shape::ellipsoid}, {"sphere", Shape::sphere}});
+    volume.shape = shape == Shape::box ? VolumeShape::box : VolumeShape::ellipsoid;
+    s.read("center_m", volume.center_m);
+    if (shape == Shape::sphere) {
+        float radius_m = 1.0F;
+        s.read("radius_m", radius_m);
+        volume.half_size_m = glm::vec3(radius_m);
+    } else {
+        s.read("half_size_m", volume.half_size_m);
+    }
+    s.read("rotation", volume.rotation);
+    s.read("edge", volume.edge);
+    s.read("blend", volume.blend,
+           {{"add", VolumeBlend::add},
+            {"subtract", VolumeBlend::subtract},
+            {"multiply", VolumeBlend::multiply},
+            {"max", VolumeBlend::max}});
+    if (volume.blend == VolumeBlend::multiply) {
+        s.read("factor", volume.factor);
+        return;
+    }
+    s.read("extinction_per_m", volume.extinction_per_m);
+    if (volume.blend != VolumeBlend::subtract) {
+        s.read("albedo", volume.albedo);
+    }
+}
+
 } // namespace
 
 void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
@@ -40,6 +70,8 @@ void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
             s.read("scale_m", medium.noise.scale_m);
             s.read("wind_m_s", medium.noise.wind_m_s);
         });
+        elements(section, "volumes", LocalVolume::most, error,
+                 [&](Section& s, std::uint32_t) { read_volume(s, medium.volumes.emplace_back()); });
     });
     subsection(root, "phase", error, [&](Section& s) {
         s.read("g", medium.phase_g);

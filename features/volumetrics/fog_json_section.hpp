@@ -97,6 +97,20 @@ public:
             read_vector((*json)[i], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
         }
     }
+    void read(const char* key, glm::quat& value) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        if (!json->is_array() || json->size() != 4) {
+            complain(path_of(key), "must be an array of 4 numbers, a quaternion x, y, z, w");
+            return;
+        }
+        float* parts[] = {&value.x, &value.y, &value.z, &value.w};
+        for (std::size_t i = 0; i < 4; ++i) {
+            *parts[i] = number((*json)[i], path_of(key) + "[" + std::to_string(i) + "]", *parts[i]);
+        }
+    }
     void read_per_cascade(const char* key, std::array<float, 4>& value) {
         const Json* json = find(key);
         if (json == nullptr) {

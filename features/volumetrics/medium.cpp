@@ -1,5 +1,6 @@
 #include "features/volumetrics/medium.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -35,6 +36,22 @@ void check_ambient(const Medium& medium, RangeCheck& check) {
     }
 }
 
+void check_volumes(const Medium& medium, RangeCheck& check) {
+    check.in_range("The number of medium.volumes", static_cast<double>(medium.volumes.size()), 0.0, LocalVolume::most);
+    for (std::size_t i = 0; i < medium.volumes.size(); ++i) {
+        const LocalVolume& volume = medium.volumes[i];
+        const std::string key = "medium.volumes[" + std::to_string(i) + "].";
+        check.in_range(key + "center_m", volume.center_m, -1e6, 1e6);
+        check.in_range(key + "half_size_m", volume.half_size_m, 0.0, 1e6);
+        check.in_range("The length of " + key + "rotation", glm::length(volume.rotation), 0.999, 1.001);
+        check.in_range(key + "edge", volume.edge, 0.0, 1.0);
+        check.in_range(key + "extinction_per_m", volume.extinction_per_m, 0.0, 1e6);
+        check.in_range(key + "factor", volume.factor, 0.0, 1e3);
+        check.in_range(key + "albedo", volume.albedo, 0.0, 1.0);
+    }
+    check.in_range("The extinction that medium.volumes can add up to", extinction_bound(medium), 0.0, 1e9);
+}
+
 } // namespace
 
 PhaseLobes phase_of(const Medium& medium) {
@@ -60,8 +77,21 @@ bool is_directed(const Medium& medium) {
     return mean_cosine(phase_of(medium)) != 0.0 && (sh[0] != none || sh[1] != none || sh[2] != none);
 }
 
+float extinction_bound(const Medium& medium) {
+    float bound = medium.homogeneous.extinction_per_m + medium.height.extinction_per_m;
+    for (const LocalVolume& volume : medium.volumes) {
+        switch (volume.blend) {
+        case VolumeBlend::add: bound += volume.extinction_per_m; break;
+        case VolumeBlend::max: bound = std::max(bound, volume.extinction_per_m); break;
+        case VolumeBlend::multiply: bound *= std::max(volume.factor, 1.0F); break;
+        case VolumeBlend::subtract: break;
+        }
+    }
+    return bound;
+}
+
 bool is_empty(const Medium& medium) {
-    return medium.homogeneous.extinction_per_m <= 0.0F && medium.height.extinction_per_m <= 0.0F;
+    return extinction_bound(medium) <= 0.0F;
 }
 
 tl::expected<void, Error> validate(const Medium& medium) {
@@ -78,6 +108,7 @@ tl::expected<void, Error> validate(const Medium& medium) {
     check.in_range("phase.g", medium.phase_g, -0.999F, 0.999F);
     check.in_range("ambient.radiance", medium.ambient_radiance, 0.0, 1e9);
     check_lobes(medium.phase_lobes, check);
+    check_volumes(medium, check);
     check_ambient(medium, check);
     return check.result();
 }

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <glm/vec3.hpp>
 #include <tl/expected.hpp>
 
 #include "features/volumetrics/error.hpp"
+#include "features/volumetrics/local_volume.hpp"
 #include "features/volumetrics/phase.hpp"
 
 namespace tyndall::volumetrics {
@@ -40,6 +42,7 @@ struct Medium {
     HomogeneousFog homogeneous;
     HeightFog height;
     DensityNoise noise;
+    std::vector<LocalVolume> volumes; ///< blended in in this order, before the noise; at most LocalVolume::most
     float phase_g = 0.0F;             ///< Henyey-Greenstein asymmetry, [-0.999, 0.999]; > 0 scatters forward
     PhaseLobes phase_lobes;           ///< where there are any, they take the place of phase_g
     glm::vec3 ambient_radiance{0.0F}; ///< cd/m^2 from every direction, each in [0, 1e9]
@@ -57,6 +60,9 @@ struct Medium {
 
 /// Ambient light that fog scatters differs with the direction of view.
 [[nodiscard]] bool is_directed(const Medium& medium);
+
+/// No less than the extinction anywhere, noise left out, 1/m.
+[[nodiscard]] float extinction_bound(const Medium& medium);
 
 /// Neither scatters nor absorbs anywhere.
 [[nodiscard]] bool is_empty(const Medium& medium);

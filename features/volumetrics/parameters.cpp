@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
 namespace tyndall::volumetrics {
@@ -89,6 +90,30 @@ void write_phase(const Medium& medium, gpu::VolumetricParameters& u) {
     u.ambient_x = glm::vec4(order_1 * medium.ambient_sh_1[2], 0.0F);
 }
 
+/// The volumes that are not empty; their number.
+std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, gpu::VolumetricParameters& u) {
+    std::uint32_t count = 0;
+    for (const LocalVolume& volume : frame.medium.volumes) {
+        const glm::dvec3 half_size_m(volume.half_size_m);
+        if (half_size_m.x <= 0.0 || half_size_m.y <= 0.0 || half_size_m.z <= 0.0) {
+            continue;
+        }
+        const glm::dmat3 axes = glm::mat3_cast(glm::normalize(glm::dquat(volume.rotation)));
+        const glm::dvec3 from_center_m = frame.camera.origin_m - glm::dvec3(volume.center_m);
+        gpu::GpuLocalVolume& out = u.volumes[count++];
+        glm::vec4* rows[] = {&out.row_x, &out.row_y, &out.row_z};
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 row = axes[i] / half_size_m[i];
+            *rows[i] = glm::vec4(row, glm::dot(row, from_center_m));
+        }
+        const bool multiplies = volume.blend == VolumeBlend::multiply;
+        out.albedo_amount =
+            glm::vec4(volume.albedo, multiplies ? volume.factor : volume.extinction_per_m * density_scale);
+        out.edge_shape_blend = glm::vec4(volume.edge > 0.0F ? 1.0F / volume.edge : 0.0F, volume.shape, volume.blend, 0);
+    }
+    return count;
+}
+
 } // namespace
 
 gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera, float radiance_scale) {
@@ -162,8 +187,8 @@ bool is_perspective(const Camera& camera) {
 gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
     const Medium& medium = frame.medium;
     const float radiance_scale = radiance_scale_for(frame);
-    const float extinction = medium.homogeneous.extinction_per_m + medium.height.extinction_per_m;
-    const float density_scale = 0.5F / std::max(extinction, 1e-30F); // noise at most doubles the extinction
+    const float density_scale =
+        0.5F / std::max(extinction_bound(medium), 1e-30F); // noise at most doubles the extinction
     const glm::dmat3 render_from_view = glm::transpose(glm::dmat3(frame.camera.view_from_render));
 
     gpu::VolumetricParameters u{};
@@ -202,7 +227,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
         u.esm_exponents[i] = frame.settings.shadow.esm_exponent[static_cast<std::size_t>(i)];
     }
     u.depth = depth_coefficients(frame.camera.clip_from_view);
-    u.frame = glm::uvec4(frames_since_cut, frame.light_count, 0, 0);
+    u.frame = glm::uvec4(frames_since_cut, frame.light_count, write_volumes(frame, density_scale, u), 0);
     return u;
 }
 

@@ -5,6 +5,7 @@
 
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
+#include "volumetrics/local_volumes.glsl"
 #include "volumetrics/noise.glsl"
 #include "volumetrics/storage.glsl"
 
@@ -13,6 +14,7 @@ layout(constant_id = 3) const bool has_homogeneous = true;
 layout(constant_id = 4) const bool has_height = true;
 layout(constant_id = 5) const bool has_noise = true;
 layout(constant_id = 6) const bool is_perspective = true;
+layout(constant_id = 7) const bool has_volumes = false;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D density;
@@ -57,6 +59,11 @@ void main() {
         float eye_height = eye.y - u.height_law.x;
         float mean = mean_height_density(eye_height + ray.y * near_m, eye_height + ray.y * far_m, u.height_law.y);
         medium += vec4(u.height.rgb, 1.0) * (u.height.w * mean);
+    }
+    if (has_volumes) {
+        for (uint i = 0u; i < u.frame.z; ++i) {
+            medium = blend_local_volume(u.volumes[i], medium, eye + ray * near_m, eye + ray * far_m);
+        }
     }
     if (has_noise) {
         float middle_m = 0.5 * (near_m + far_m);

@@ -8,6 +8,17 @@
 
 TYNDALL_INTEROP_BEGIN
 
+// At most as many local volumes.
+#define TYNDALL_LOCAL_VOLUME_COUNT 16
+
+struct GpuLocalVolume {
+    vec4 row_x;            // xyz . p + w: the render-space point p in the space where the shape reaches from -1 to 1
+    vec4 row_y;
+    vec4 row_z;
+    vec4 albedo_amount;    // rgb; w: extinction, 1/m, times density_scale, or the factor of multiply
+    vec4 edge_shape_blend; // x: 1 / edge, 0 where it is hard; y: VolumeShape; z: VolumeBlend; w 0
+};
+
 struct VolumetricParameters {
     ScatteringVolume volume; // first, so that those who only look up bind the same buffer
     // The column of uv is the set of render-space points  z (ray_u u + ray_v v + ray_0) + (eye_u u + eye_v v + eye_0),
@@ -41,7 +52,8 @@ struct VolumetricParameters {
     vec4 esm_exponents;   // k of each cascade, per unit of shadow depth
     vec4 esm_size;        // x: texels of a side of the ESM; y: 1 / x; z: texels of a side of a cascade; w: 1 / z
     vec4 depth;           // view depth of device depth d: (x - d y) / (z + d w)
-    uvec4 frame;          // x: frames since the last cut; y: lights; zw 0
+    uvec4 frame;          // x: frames since the last cut; y: lights; z: local volumes; w 0
+    GpuLocalVolume volumes[TYNDALL_LOCAL_VOLUME_COUNT]; // the first frame.z
 };
 
 // Lights that fit the smallest uniform buffer that Vulkan allows, 16 KiB.

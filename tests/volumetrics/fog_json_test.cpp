@@ -134,6 +134,50 @@ TEST(FogJson, ReadsPhaseLobesAndDirectedAmbient) {
     EXPECT_EQ(fog->medium.ambient_sh_1[2], glm::vec3(0, 0, 1));
 }
 
+TEST(FogJson, ReadsLocalVolumes) {
+    const auto fog = parse_fog_json(R"({"medium": {"volumes": [
+        {"shape": "box", "center_m": [1, 2, 3], "half_size_m": [4, 5, 6], "rotation": [0, 0.6, 0, 0.8], "edge": 0.25,
+         "extinction_per_m": 0.5, "albedo": [0.1, 0.2, 0.3], "blend": "max"},
+        {"shape": "sphere", "radius_m": 7, "blend": "subtract", "extinction_per_m": 2},
+        {"shape": "ellipsoid", "blend": "multiply", "factor": 3}]}})");
+    ASSERT_TRUE(fog) << fog.error().message;
+    const auto& volumes = fog->medium.volumes;
+    ASSERT_EQ(volumes.size(), 3U);
+    EXPECT_EQ(volumes[0].shape, VolumeShape::box);
+    EXPECT_EQ(volumes[0].center_m, glm::vec3(1, 2, 3));
+    EXPECT_EQ(volumes[0].half_size_m, glm::vec3(4, 5, 6));
+    EXPECT_EQ(volumes[0].rotation, glm::quat(0.8F, 0.0F, 0.6F, 0.0F));
+    EXPECT_EQ(volumes[0].edge, 0.25F);
+    EXPECT_EQ(volumes[0].extinction_per_m, 0.5F);
+    EXPECT_EQ(volumes[0].albedo, glm::vec3(0.1F, 0.2F, 0.3F));
+    EXPECT_EQ(volumes[0].blend, VolumeBlend::max);
+    EXPECT_EQ(volumes[1].shape, VolumeShape::ellipsoid);
+    EXPECT_EQ(volumes[1].half_size_m, glm::vec3(7.0F));
+    EXPECT_EQ(volumes[1].blend, VolumeBlend::subtract);
+    EXPECT_EQ(volumes[2].blend, VolumeBlend::multiply);
+    EXPECT_EQ(volumes[2].factor, 3.0F);
+}
+
+TEST(FogJson, ImpossibleVolumesNameKeyAndRange) {
+    const auto of_volume = [](const std::string& text) {
+        return refusal(R"({"medium": {"volumes": [{)" + text + "}]}}");
+    };
+    EXPECT_EQ(of_volume(R"("extinction_per_m": -1)"),
+              "medium.volumes[0].extinction_per_m must be between 0 and 1e+06, not -1.");
+    EXPECT_EQ(of_volume(R"("edge": 2)"), "medium.volumes[0].edge must be between 0 and 1, not 2.");
+    EXPECT_EQ(of_volume(R"("half_size_m": [1, -1, 1])"),
+              "medium.volumes[0].half_size_m[1] must be between 0 and 1e+06, not -1.");
+    EXPECT_EQ(of_volume(R"("rotation": [0, 0, 0, 2])"),
+              "The length of medium.volumes[0].rotation must be between 0.999 and 1.001, not 2.");
+    EXPECT_EQ(of_volume(R"("radius_m": 1)"), "medium.volumes[0].radius_m is not a key of the fog file.");
+    EXPECT_EQ(of_volume(R"("factor": 1)"), "medium.volumes[0].factor is not a key of the fog file.");
+    EXPECT_EQ(of_volume(R"("shape": "cone")"),
+              R"(medium.volumes[0].shape must be one of "box", "ellipsoid", "sphere".)");
+    EXPECT_EQ(of_volume(R"("blend": "multiply", "factor": -1)"),
+              "medium.volumes[0].factor must be between 0 and 1000, not -1.");
+    EXPECT_EQ(refusal(R"({"medium": {"volumes": {}}})"), "medium.volumes must be an array of 1 to 16 objects.");
+}
+
 TEST(FogJson, ImpossiblePhasesAndAmbientsNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"phase": {"g": 2}})"), "phase.g must be between -0.999 and 0.999, not 2.");
     EXPECT_EQ(refusal(R"({"phase": {"lobes": [{"g": 2}]}})"),

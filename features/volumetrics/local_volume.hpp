@@ -1,0 +1,37 @@
+// Fog, or its absence, inside a box or an ellipsoid.
+#pragma once
+
+#include <cstdint>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+namespace tyndall::volumetrics {
+
+enum class VolumeShape : std::uint8_t { box, ellipsoid };
+
+/// What a volume does to the fog that is there before it, the volumes before it included. With w its weight:
+enum class VolumeBlend : std::uint8_t {
+    add,      ///< extinction + w e, scattering + w e albedo
+    subtract, ///< extinction - w e, at least 0; the albedo stays
+    multiply, ///< both times 1 + w (factor - 1)
+    max,      ///< its own w e and w e albedo where w e is the larger extinction
+};
+
+/// In the space where the shape reaches from -1 to 1 along each axis, at the point q, the weight is 0 outside, and
+/// inside the product of min(1, (1 - |q_i|) / edge) over the axes of a box, min(1, (1 - |q|) / edge) for an ellipsoid.
+struct LocalVolume {
+    static constexpr std::uint32_t most = 16;
+
+    VolumeShape shape = VolumeShape::box;
+    VolumeBlend blend = VolumeBlend::add;
+    glm::vec3 center_m{0.0F};                   ///< world, each in [-1e6, 1e6]
+    glm::vec3 half_size_m{1.0F};                ///< along its own axes, each in [0, 1e6]; 0: it is empty
+    glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F}; ///< from its axes to the world's, of unit length
+    float edge = 0.0F;                          ///< [0, 1]; 0: hard
+    float extinction_per_m = 0.0F;              ///< e, [0, 1e6]; not of multiply
+    float factor = 1.0F;                        ///< of multiply, [0, 1e3]
+    glm::vec3 albedo{1.0F};                     ///< each in [0, 1]; of add and max
+};
+
+} // namespace tyndall::volumetrics

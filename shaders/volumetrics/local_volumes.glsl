@@ -1,0 +1,83 @@
+// Boxes and ellipsoids of fog in a slice of the ray, by their exact overlap with it: a point test would make their faces
+// flicker from slice to slice.
+#ifndef TYNDALL_SHADERS_VOLUMETRICS_LOCAL_VOLUMES_GLSL
+#define TYNDALL_SHADERS_VOLUMETRICS_LOCAL_VOLUMES_GLSL
+
+#include "volumetrics/interop.h"
+
+// As VolumeShape and VolumeBlend of features/volumetrics/local_volume.hpp.
+const float shape_ellipsoid = 1.0;
+const float blend_subtract = 1.0;
+const float blend_multiply = 2.0;
+const float blend_max = 3.0;
+
+// A render-space point in the space where the shape reaches from -1 to 1.
+vec3 shape_space(GpuLocalVolume volume, vec3 p) {
+    return vec3(dot(volume.row_x.xyz, p) + volume.row_x.w, dot(volume.row_y.xyz, p) + volume.row_y.w,
+                dot(volume.row_z.xyz, p) + volume.row_z.w);
+}
+
+// The s in [0, 1] between which a + s d is inside; not in order where it passes by.
+vec2 overlap_with_box(vec3 a, vec3 d) {
+    vec3 inverse = 1.0 / mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20)));
+    vec3 s0 = (-1.0 - a) * inverse;
+    vec3 s1 = (1.0 - a) * inverse;
+    vec3 enter = min(s0, s1);
+    vec3 leave = max(s0, s1);
+    return vec2(max(max(enter.x, enter.y), max(enter.z, 0.0)), min(min(leave.x, leave.y), min(leave.z, 1.0)));
+}
+
+// By the point of the line that is nearest to the centre: b^2 - a c would cancel far away.
+vec2 overlap_with_ellipsoid(vec3 a, vec3 d) {
+    float squared = max(dot(d, d), 1e-30);
+    float nearest = -dot(a, d) / squared;
+    vec3 offset = a + nearest * d;
+    float inside = 1.0 - dot(offset, offset);
+    if (inside <= 0.0) {
+        return vec2(1.0, 0.0);
+    }
+    float reach = sqrt(inside / squared);
+    return vec2(max(nearest - reach, 0.0), min(nearest + reach, 1.0));
+}
+
+float edge_weight(GpuLocalVolume volume, vec3 q) {
+    float inverse_edge = volume.edge_shape_blend.x;
+    if (volume.edge_shape_blend.y == shape_ellipsoid) {
+        return clamp((1.0 - length(q)) * inverse_edge, 0.0, 1.0);
+    }
+    vec3 weight = clamp((1.0 - abs(q)) * inverse_edge, 0.0, 1.0);
+    return weight.x * weight.y * weight.z;
+}
+
+// `medium` (scattering rgb, extinction a; means over the slice from `near` to `far`) with the volume blended in. Inside
+// the overlap the weight is its mean there, of soft edges by Gauss-Legendre with three nodes.
+vec4 blend_local_volume(GpuLocalVolume volume, vec4 medium, vec3 near, vec3 far) {
+    vec3 a = shape_space(volume, near);
+    vec3 d = shape_space(volume, far) - a;
+    vec2 overlap = volume.edge_shape_blend.y == shape_ellipsoid ? overlap_with_ellipsoid(a, d) : overlap_with_box(a, d);
+    float part = overlap.y - overlap.x;
+    if (part <= 0.0) {
+        return medium;
+    }
+    float weight = 1.0;
+    if (volume.edge_shape_blend.x > 0.0) {
+        float middle = 0.5 * (overlap.x + overlap.y);
+        float node = 0.387298335 * part;
+        weight = (5.0 * edge_weight(volume, a + (middle - node) * d) + 8.0 * edge_weight(volume, a + middle * d) +
+                  5.0 * edge_weight(volume, a + (middle + node) * d)) / 18.0;
+    }
+    float amount = weight * volume.albedo_amount.w;
+    vec4 own = vec4(volume.albedo_amount.rgb, 1.0) * amount;
+    float blend = volume.edge_shape_blend.z;
+    vec4 inside = medium + own;
+    if (blend == blend_subtract) {
+        inside = medium * max(1.0 - amount / max(medium.a, 1e-30), 0.0);
+    } else if (blend == blend_multiply) {
+        inside = medium * (1.0 + weight * (volume.albedo_amount.w - 1.0));
+    } else if (blend == blend_max) {
+        inside = own.a > medium.a ? own : medium;
+    }
+    return mix(medium, inside, part);
+}
+
+#endif
