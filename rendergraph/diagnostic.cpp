@@ -18,6 +18,7 @@ std::string_view name_of(DiagnosticCode code) {
     case DiagnosticCode::foreign_handle: return "foreign handle";
     case DiagnosticCode::read_of_unwritten: return "read of something never written";
     case DiagnosticCode::two_writers: return "two writers of one version";
+    case DiagnosticCode::host_too_early: return "host pass after a device pass";
     case DiagnosticCode::cycle: return "cycle";
     case DiagnosticCode::access_not_possible: return "access not possible";
     case DiagnosticCode::queue_cannot: return "queue cannot do this";

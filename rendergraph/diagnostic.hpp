@@ -13,6 +13,7 @@ enum class DiagnosticCode : std::uint8_t {
     foreign_handle,          ///< a handle of another graph, of an earlier frame, or never initialised
     read_of_unwritten,       ///< nothing ever wrote the version that a pass reads
     two_writers,             ///< two passes write from the same version
+    host_too_early,          ///< a host pass wants what the device has yet to do in the same frame
     cycle,                   ///< the data flow runs in a circle
     access_not_possible,     ///< the access does not fit the resource: an image as index buffer, a write of `sampled`
     queue_cannot,            ///< the pass kind or the queue asked for cannot do the access

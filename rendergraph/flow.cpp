@@ -160,9 +160,36 @@ private:
     void add(std::uint32_t from_access, std::uint32_t to_access, Hazard hazard) {
         const std::uint32_t from = graph_.accesses[from_access].pass;
         const std::uint32_t to = graph_.accesses[to_access].pass;
+        if (graph_.passes[to].kind == PassKind::host && graph_.passes[from].kind != PassKind::host) {
+            report_too_early(from_access, to_access);
+        }
         if (from != to) {
             flow_.edges.push_back({from, to, graph_.accesses[from_access].resource, hazard});
         }
+    }
+
+    /// Once for an access of the host pass.
+    void report_too_early(std::uint32_t from_access, std::uint32_t to_access) {
+        const AccessDesc& access = graph_.accesses[to_access];
+        const std::string& pass = graph_.passes[access.pass].name;
+        const std::string& name = graph_.resources[access.resource].name;
+        const Diagnostics& known = flow_.errors;
+        if (!known.empty() && known.back().code == DiagnosticCode::host_too_early && known.back().pass == pass &&
+            known.back().resource == name) {
+            return;
+        }
+        const AccessDesc& before = graph_.accesses[from_access];
+        flow_.errors.push_back({.code = DiagnosticCode::host_too_early,
+                                .pass = pass,
+                                .resource = name,
+                                .message = "Pass " + quoted(pass) +
+                                           " runs on the host while the frame is recorded, but " +
+                                           quoted(graph_.passes[before.pass].name) + " must have " +
+                                           (is_write(before.direction) ? "written " : "read ") + quoted(name) +
+                                           " before it; let the frame leave it to the host and use it when the frame "
+                                           "is done",
+                                .where = access.where,
+                                .other_where = before.where});
     }
 
     void report_two_writers(std::uint32_t resource, std::span<const std::uint32_t> accesses) {

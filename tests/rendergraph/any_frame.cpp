@@ -317,6 +317,7 @@ private:
         for (std::size_t part = 0; part < known.written.size(); ++part) {
             known.written[part] = after[0].written[part] && after[1].written[part];
         }
+        known.idle_before = after[0].idle_before && after[1].idle_before;
         std::erase_if(snapshots_, [&](const Known& past) { // what one form overwrites, the other may not
             return past.image.resource == known.image.resource && past.buffer.resource == known.buffer.resource;
         });

@@ -58,6 +58,19 @@ TEST(Diagnostics, TwoWriters) {
         second, first);
 }
 
+TEST(Diagnostics, HostTooEarly) {
+    GraphBuilder graph;
+    Buffer sums = graph.create_buffer("sums", {.size_bytes = 16});
+    const unsigned written = __LINE__ + 1;
+    graph.add_pass("add up", PassKind::compute).writes(sums, Access::storage_compute);
+    const unsigned read = __LINE__ + 1;
+    graph.add_pass("look", PassKind::host).reads(sums, Access::host).has_side_effect("prints them");
+    expect_one(mistakes(graph), DiagnosticCode::host_too_early,
+               "Pass 'look' runs on the host while the frame is recorded, but 'add up' must have written 'sums' before "
+               "it; let the frame leave it to the host and use it when the frame is done",
+               read, written);
+}
+
 TEST(Diagnostics, Cycle) {
     GraphBuilder graph;
     Buffer x = graph.create_buffer("x", {.size_bytes = 16});
