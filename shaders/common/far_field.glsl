@@ -1,5 +1,5 @@
-// Fog along the part of a ray that lies beyond the scattering volume's range: homogeneous and height fog, lit by the
-// sun without shadow and by the ambient.
+// Fog along the part of a ray that lies beyond the scattering volume's range: homogeneous and height fog, lit by the sun
+// without shadow and by the ambient.
 #ifndef TYNDALL_SHADERS_COMMON_FAR_FIELD_GLSL
 #define TYNDALL_SHADERS_COMMON_FAR_FIELD_GLSL
 
@@ -21,10 +21,10 @@ float far_height_optical_depth(FarField far, float a, float climb, float length_
     return far.height.w * length_m * mean_height_density(a, a + climb * length_m, falloff);
 }
 
-// The path from `start` (view space, m) in direction `slope`, along which view depth grows by 1, over depth_m > 0.
-// Source and extinction are those of the froxels: L = J (1 - e^-tau), J constant along the path. Where the two fogs'
-// albedos differ, J takes their mean weighted with optical depth over at most one optical depth of the homogeneous fog,
-// in which most of what is seen lies.
+// The path from `start` (view space, m) in direction `slope`, along which view depth grows by 1, over depth_m > 0. Source
+// and extinction are those of the froxels: L = J (1 - e^-tau), J constant along the path. Where the two fogs' albedos
+// differ, J takes their mean weighted with optical depth over at most one optical depth of the homogeneous fog, in front
+// of which most of what is seen lies.
 FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
     float stretch = length(slope);
     vec3 ray = slope / stretch;
@@ -45,8 +45,8 @@ FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
             phase += far.phase_weight[i] * phase_of_lobe(far.phase_function[i], far.phase_asymmetry[i], angle);
         }
     }
-    vec3 directed = far.ambient_x.rgb * ray.x + far.ambient_y.rgb * ray.y + far.ambient_z.rgb * ray.z;
-    vec3 arriving = far.ambient.rgb + directed + far.sun_illuminance.rgb * phase;
+    vec3 arriving = far.ambient.rgb + far.ambient_x.rgb * ray.x + far.ambient_y.rgb * ray.y + far.ambient_z.rgb * ray.z +
+                    far.sun_illuminance.rgb * phase;
     float attenuation = exp(-tau);
     return FarFog(albedo * arriving * (tau < 0.25 ? tau * phi1(tau) : 1.0 - attenuation), attenuation);
 }

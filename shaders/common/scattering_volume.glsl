@@ -50,8 +50,8 @@ float growth(float y) {
 }
 
 // Radiance scattered toward the eye in front of a point, and the transmittance from it to the eye. `depth_m` is the
-// point's view depth. Beyond the range the ray goes on in closed form, so that both are continuous there; in front of
-// the eye there is no fog.
+// point's view depth. Beyond the range the ray goes on in closed form, so that both are continuous there; in front of the
+// eye there is no fog.
 //
 // Between boundary k and k + 1, at fraction f of the slice with x = tau_{k+1} - tau_k:
 //   tau = tau_k + g x,  L = L_k + (L_{k+1} - L_k) g phi1(g x) / phi1(x),
@@ -82,8 +82,7 @@ void scattering_lookup(ScatteringVolume volume, sampler2DArray accumulated, vec2
     float range_m = volume.law.range_shape.x;
     if (depth_m > range_m) {
         vec3 slope = vec3(uv * volume.slope.xy + volume.slope.zw, -1.0);
-        vec3 start = vec3(column_xy(volume, uv, range_m), -range_m);
-        FarFog beyond = far_fog(volume.beyond, start, slope, depth_m - range_m);
+        FarFog beyond = far_fog(volume.beyond, vec3(column_xy(volume, uv, range_m), -range_m), slope, depth_m - range_m);
         radiance += transmittance * beyond.radiance;
         transmittance *= beyond.transmittance;
     }
