@@ -63,6 +63,25 @@ glm::vec4 temporal_parameters(const FrameInputs& frame, const std::optional<Fram
     return result;
 }
 
+gpu::FarField far_field(const FrameInputs& frame) {
+    const Medium& medium = frame.medium;
+    const glm::dmat3 view_from_render(frame.camera.view_from_render);
+    gpu::FarField far{};
+    far.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m);
+    far.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m);
+    far.up = glm::vec4(view_from_render * glm::dvec3(0.0, 1.0, 0.0),
+                       frame.camera.origin_m.y - static_cast<double>(medium.height.base_height_m));
+    far.sun_illuminance.w = medium.height.falloff_per_m;
+    if (frame.sun) {
+        const glm::dvec3 travel = glm::normalize(glm::dvec3(frame.sun->direction));
+        far.sun_direction = glm::vec4(view_from_render * travel, 0.0);
+        far.sun_illuminance = glm::vec4(frame.sun->illuminance_lux, medium.height.falloff_per_m);
+    }
+    far.sun_direction.w = medium.phase_g;
+    far.ambient = glm::vec4(medium.ambient_radiance, 0.0F);
+    return far;
+}
+
 /// Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences": powers of the reciprocal of 1.2207...
 glm::vec4 jitter(const FrameInputs& frame, std::uint32_t frames_since_cut) {
     const double n = frames_since_cut;
@@ -88,35 +107,6 @@ void write_phase(const Medium& medium, gpu::VolumetricParameters& u) {
     u.ambient_y = glm::vec4(order_1 * medium.ambient_sh_1[0], 0.0F);
     u.ambient_z = glm::vec4(order_1 * medium.ambient_sh_1[1], 0.0F);
     u.ambient_x = glm::vec4(order_1 * medium.ambient_sh_1[2], 0.0F);
-}
-
-/// From phase and ambient as `write_phase` left them, turned into view space.
-gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameters& u) {
-    const Medium& medium = frame.medium;
-    const glm::dmat3 view_from_render(frame.camera.view_from_render);
-    gpu::FarField far{};
-    far.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m);
-    far.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m);
-    far.up = glm::vec4(view_from_render * glm::dvec3(0.0, 1.0, 0.0),
-                       frame.camera.origin_m.y - static_cast<double>(medium.height.base_height_m));
-    far.sun_illuminance.w = medium.height.falloff_per_m;
-    if (frame.sun) {
-        const glm::dvec3 travel = glm::normalize(glm::dvec3(frame.sun->direction));
-        far.sun_direction = glm::vec4(view_from_render * travel, 0.0);
-        far.sun_illuminance = glm::vec4(frame.sun->illuminance_lux, medium.height.falloff_per_m);
-    }
-    const PhaseLobes phase = phase_of(medium);
-    for (std::uint32_t i = 0; i < phase.count; ++i) {
-        far.phase_function[static_cast<int>(i)] = static_cast<std::uint32_t>(phase.lobes[i].function);
-    }
-    far.phase_asymmetry = u.phase_asymmetry;
-    far.phase_weight = u.phase_weight;
-    far.ambient = u.ambient;
-    const glm::mat3 turn(view_from_render);
-    far.ambient_x = turn[0][0] * u.ambient_x + turn[1][0] * u.ambient_y + turn[2][0] * u.ambient_z;
-    far.ambient_y = turn[0][1] * u.ambient_x + turn[1][1] * u.ambient_y + turn[2][1] * u.ambient_z;
-    far.ambient_z = turn[0][2] * u.ambient_x + turn[1][2] * u.ambient_y + turn[2][2] * u.ambient_z;
-    return far;
 }
 
 /// The volumes that are not empty; their number.
@@ -223,6 +213,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
 
     gpu::VolumetricParameters u{};
     u.volume = scattering_volume(frame.settings.grid, frame.camera, radiance_scale);
+    u.volume.beyond = far_field(frame);
     u.render_from_view = glm::mat4(glm::dmat4(render_from_view));
     const glm::dvec4 slope(u.volume.slope);
     const glm::dvec4 origin(u.volume.origin);
@@ -246,7 +237,6 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, 0.0F, 0.0F, 0.0F);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
     write_phase(medium, u);
-    u.volume.beyond = far_field(frame, u);
     u.temporal = temporal_parameters(frame, before, radiance_scale);
     const std::uint32_t frames_since_cut = before ? before->frames_since_cut + 1 : 0;
     u.jitter = jitter(frame, frames_since_cut);

@@ -5,7 +5,7 @@
 
 #include "far_field.h"
 #include "height_density.glsl"
-#include "phase_functions.glsl"
+#include "lights.glsl"
 
 struct FarFog {
     vec3 radiance; // toward the eye, at the beginning of the path
@@ -38,15 +38,8 @@ FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
     vec3 albedo = mix(far.homogeneous.rgb, far.height.rgb, part);
 
     float tau = far.homogeneous.w * length_m + far_height_optical_depth(far, height, climb, length_m);
-    PhaseAngle angle = phase_angle(far.sun_direction.xyz, -ray);
-    float phase = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        if (far.phase_weight[i] > 0.0) {
-            phase += far.phase_weight[i] * phase_of_lobe(far.phase_function[i], far.phase_asymmetry[i], angle);
-        }
-    }
-    vec3 arriving = far.ambient.rgb + far.ambient_x.rgb * ray.x + far.ambient_y.rgb * ray.y + far.ambient_z.rgb * ray.z +
-                    far.sun_illuminance.rgb * phase;
+    vec3 arriving = far.ambient.rgb + far.sun_illuminance.rgb *
+                                          henyey_greenstein(far.sun_direction.w, far.sun_direction.xyz, -ray);
     float attenuation = exp(-tau);
     return FarFog(albedo * arriving * (tau < 0.25 ? tau * phi1(tau) : 1.0 - attenuation), attenuation);
 }

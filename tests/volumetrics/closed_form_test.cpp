@@ -238,7 +238,7 @@ TEST_F(ClosedForm, EmptyMediumDeclaresNothing) {
 
 TEST_F(ClosedForm, ZeroDensityLeavesTheSceneBitIdentical) {
     Scene scene = plain_scene();
-    scene.depth_m = [](std::uint32_t x, std::uint32_t y) { return std::min(varied_depth_m(x, y), 1e4); };
+    scene.depth_m = varied_depth_m;
     scene.color = [](std::uint32_t x, std::uint32_t y) {
         return glm::vec4(1.0F / static_cast<float>(x + 1), static_cast<float>(y) * 1e7F, 1e-30F * static_cast<float>(x),
                          0.3F);
