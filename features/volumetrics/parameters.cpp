@@ -63,25 +63,6 @@ glm::vec4 temporal_parameters(const FrameInputs& frame, const std::optional<Fram
     return result;
 }
 
-gpu::FarField far_field(const FrameInputs& frame) {
-    const Medium& medium = frame.medium;
-    const glm::dmat3 view_from_render(frame.camera.view_from_render);
-    gpu::FarField far{};
-    far.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m);
-    far.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m);
-    far.up = glm::vec4(view_from_render * glm::dvec3(0.0, 1.0, 0.0),
-                       frame.camera.origin_m.y - static_cast<double>(medium.height.base_height_m));
-    far.sun_illuminance.w = medium.height.falloff_per_m;
-    if (frame.sun) {
-        const glm::dvec3 travel = glm::normalize(glm::dvec3(frame.sun->direction));
-        far.sun_direction = glm::vec4(view_from_render * travel, 0.0);
-        far.sun_illuminance = glm::vec4(frame.sun->illuminance_lux, medium.height.falloff_per_m);
-    }
-    far.sun_direction.w = medium.phase_g;
-    far.ambient = glm::vec4(medium.ambient_radiance, 0.0F);
-    return far;
-}
-
 /// Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences": powers of the reciprocal of 1.2207...
 glm::vec4 jitter(const FrameInputs& frame, std::uint32_t frames_since_cut) {
     const double n = frames_since_cut;
@@ -190,7 +171,6 @@ bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& bef
     gpu::ScatteringVolume now = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
     now.scale.x = before->volume.scale.x;
     now.scale.y = before->volume.scale.y;
-    now.beyond = before->volume.beyond; // holds no froxel
     using Words = std::array<std::uint32_t, sizeof now / 4>;
     return std::bit_cast<Words>(now) != std::bit_cast<Words>(before->volume);
 }
@@ -213,7 +193,6 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
 
     gpu::VolumetricParameters u{};
     u.volume = scattering_volume(frame.settings.grid, frame.camera, radiance_scale);
-    u.volume.beyond = far_field(frame);
     u.render_from_view = glm::mat4(glm::dmat4(render_from_view));
     const glm::dvec4 slope(u.volume.slope);
     const glm::dvec4 origin(u.volume.origin);

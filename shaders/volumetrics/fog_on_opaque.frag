@@ -1,6 +1,5 @@
 // Opaque colour -> colour times transmittance plus in-scattered radiance, at each pixel's own depth. The blend unit does
-// it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog
-// of the whole ray, to infinity where the far plane lies there.
+// it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog of the whole range.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double tolerance = 2e-3;
-constexpr double sky_m = 1e20; ///< stands for infinity, with which the closed forms would multiply by 0
 
 struct Errors {
     double radiance = 0.0;      ///< largest relative error
@@ -35,15 +34,16 @@ double varied_depth_m(std::uint32_t x, std::uint32_t y) {
     return 0.05 * std::pow(1600.0, ((x * 37 + y * 101) % 509) / 508.0);
 }
 
-template <typename Expected> // (ray, depth_m) -> {radiance of red, transmittance}
+template <typename Expected> // (ray, depth_m within the range) -> {radiance of red, transmittance}
 Errors compare(const Scene& scene, const Result& result, Expected expected) {
     Errors errors;
+    const double range_m = static_cast<double>(scene.inputs.settings.grid.range_m);
     for (std::uint32_t y = 0; y < scene.image.y; ++y) {
         for (std::uint32_t x = 0; x < scene.image.x; ++x) {
             const glm::vec4& found = result.color[y * scene.image.x + x];
             // The depth that the shader can know: device depth has single precision.
             const double seen_m = near_m / static_cast<double>(static_cast<float>(near_m / scene.depth_m(x, y)));
-            const auto [radiance, transmittance] = expected(pixel_ray(scene, x, y), std::min(seen_m, sky_m));
+            const auto [radiance, transmittance] = expected(pixel_ray(scene, x, y), std::min(seen_m, range_m));
             errors.radiance = std::max(errors.radiance, std::abs(static_cast<double>(found.r) - radiance) / radiance);
             errors.transmittance =
                 std::max(errors.transmittance, std::abs(static_cast<double>(found.b) - transmittance));
