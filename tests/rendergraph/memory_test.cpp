@@ -234,7 +234,7 @@ TEST(Memory, ARefinedPackingStaysWhereItFits) {
         EXPECT_EQ((*next)->statistics.transient_bytes, less) << seed;
         EXPECT_TRUE(verify(declared.desc, **next).empty()) << seed;
         // Packings that are none: everything at the heap's begin, everything one byte off.
-        for (const VkDeviceSize wrong : {0, 1}) {
+        for (const VkDeviceSize wrong : {VkDeviceSize{0}, VkDeviceSize{1}}) {
             for (Placement& placement : moved.placements) {
                 placement.offset_bytes = wrong;
             }
