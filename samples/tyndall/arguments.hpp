@@ -103,6 +103,16 @@ struct PrecisionArguments {
 /// What --scene can name besides "all".
 [[nodiscard]] std::vector<std::string> precision_scene_names();
 
+struct StabilityArguments {
+    std::string name = "all";
+    bool quick = false;                          ///< the extremes of each case only
+    std::optional<std::filesystem::path> folder; ///< for stability.csv and stability.json
+    std::string device;
+    bool json = false;
+};
+/// What --case can name besides "all".
+[[nodiscard]] std::vector<std::string> stability_case_names();
+
 /// Exit codes of every subcommand.
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_failed = 1;    ///< the device or the machine failed
@@ -111,6 +121,7 @@ inline constexpr int exit_bad_input = 2; ///< what the user gave cannot be used
 [[nodiscard]] int run_render(const RenderArguments& arguments);
 [[nodiscard]] int run_schedule(const ScheduleArguments& arguments);
 [[nodiscard]] int run_precision(const PrecisionArguments& arguments);
+[[nodiscard]] int run_stability(const StabilityArguments& arguments);
 [[nodiscard]] int run_info(const InfoArguments& arguments);
 
 } // namespace tyndall::samples

@@ -94,6 +94,16 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, Pre
     command.add_flag("--json", precision.json, "print JSON instead of the table");
 }
 
+void add_stability_options(CLI::App& command, StabilityArguments& stability) {
+    std::vector<std::string> names = stability_case_names();
+    names.emplace_back("all");
+    command.add_option("--case", stability.name, "what to vary")->check(CLI::IsMember(names))->capture_default_str();
+    command.add_flag("--quick", stability.quick, "only the extremes of each case, and fewer frames");
+    command.add_option("--out", stability.folder, "folder for stability.csv and stability.json");
+    command.add_option("--device", stability.device, "part of a device's name, or its index; see tyndall info");
+    command.add_flag("--json", stability.json, "print JSON instead of the table");
+}
+
 tl::expected<void, std::string> parse_texts(const PrecisionTexts& texts, PrecisionArguments& precision) {
     const auto take = [](auto parsed, auto& into) -> tl::expected<void, std::string> {
         if (!parsed) {
@@ -176,6 +186,11 @@ int run(int argc, char** argv) {
         app.add_subcommand("precision", "Error against run time, on scenes whose exact picture is computed");
     add_precision_options(*precision_command, precision, precision_texts);
 
+    StabilityArguments stability;
+    CLI::App* stability_command =
+        app.add_subcommand("stability", "The fog at the ends of its domain: bounds, and errors against exact pictures");
+    add_stability_options(*stability_command, stability);
+
     InfoArguments info;
     CLI::App* info_command = app.add_subcommand("info", "List devices, their queues and what is supported");
     info_command->add_option("--device", info.device, "part of a device's name, or its index");
@@ -202,6 +217,9 @@ int run(int argc, char** argv) {
             return bad_input(parsed.error());
         }
         return run_precision(precision);
+    }
+    if (stability_command->parsed()) {
+        return run_stability(stability);
     }
     return schedule_command->parsed() ? run_schedule(schedule) : run_info(info);
 }

@@ -181,6 +181,18 @@ tl::expected<void, engine::Error> StageImages::declare(rg::GraphBuilder& graph, 
     return done;
 }
 
+std::vector<StageValues> StageImages::values() const {
+    std::vector<StageValues> all;
+    for (const Capture& capture : captures_) {
+        if (capture.kind != Kind::clusters) {
+            const std::size_t texels = std::size_t{capture.width} * capture.height * capture.slices;
+            all.push_back({capture.name, capture.width, capture.height, capture.slices,
+                           as_floats(capture.buffer, capture.image.format, texels)});
+        }
+    }
+    return all;
+}
+
 tl::expected<std::vector<std::filesystem::path>, engine::Error>
 StageImages::write(const std::filesystem::path& folder) const {
     std::error_code failure;

@@ -10,6 +10,7 @@
 #include "engine/memory.hpp"
 #include "features/volumetrics/feature.hpp"
 #include "rendergraph/graph.hpp"
+#include "samples/stability/bounds.hpp"
 
 namespace tyndall::samples {
 
@@ -28,6 +29,9 @@ public:
     /// After that frame has finished: one PNG a stage, slices from near to far in reading order. Returns the files.
     [[nodiscard]] tl::expected<std::vector<std::filesystem::path>, engine::Error>
     write(const std::filesystem::path& folder) const;
+
+    /// Likewise: what the images hold, cluster masks left out.
+    [[nodiscard]] std::vector<StageValues> values() const;
 
 private:
     enum class Kind : std::uint8_t { esm, density, radiance, accumulated, clusters };

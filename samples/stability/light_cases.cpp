@@ -1,0 +1,86 @@
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "samples/stability/case.hpp"
+
+namespace tyndall::samples {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+/// Thin enough that light loses less than a part in a thousand on the way that anything in the picture is away.
+constexpr float thin_per_m = 1e-5F;
+
+StabilityCase lit_air(std::string name, std::string parameter, const reference::Light& light) {
+    StabilityCase test{.name = std::move(name), .parameter = std::move(parameter)};
+    test.scene = fog_before_a_wall(thin_per_m);
+    test.scene.lights = {light};
+    return test;
+}
+
+void add_intensities(std::vector<StabilityCase>& cases) {
+    for (const double candela : {1e-6, 1.0, 1e3, 1e6, 1e9}) {
+        StabilityCase test = lit_air("light_intensity", value_text(candela, "cd"),
+                                     {.position = {4.0, 20.0, -15.0}, .intensity_cd = glm::dvec3(candela)});
+        test.bound = 2e-2;
+        test.quick = candela == 1e-6 || candela == 1e9;
+        cases.push_back(std::move(test));
+    }
+}
+
+void add_distances(std::vector<StabilityCase>& cases) {
+    // To the side of the eye, as bright there as 100 cd at 10 m.
+    for (const double distance_m : {0.0, 0.1, 10.0, 1e3, 1e5}) {
+        const double candela = distance_m * distance_m + 1e-3;
+        StabilityCase test = lit_air("light_distance", value_text(distance_m, "m"),
+                                     {.position = {0.0, distance_m, 0.0}, .intensity_cd = glm::dvec3(candela)});
+        if (distance_m >= 10.0) {
+            test.bound = 2e-2;
+        }
+        test.quick = distance_m == 0.0 || distance_m == 1e5;
+        cases.push_back(std::move(test));
+    }
+}
+
+/// In the view: next to the light no grid holds the picture, but nothing may leave its bounds.
+void add_places(std::vector<StabilityCase>& cases) {
+    const volumetrics::GridSettings grid = fog_before_a_wall(0.0F).fog.settings.grid;
+    const auto boundary_m = [&](double k) {
+        const double s = static_cast<double>(grid.shape_m);
+        return s * (std::pow(1.0 + static_cast<double>(grid.range_m) / s, k / grid.slices) - 1.0);
+    };
+    for (const auto& [parameter, slice] : {std::pair("inside a froxel", 8.5), std::pair("on a slice boundary", 8.0),
+                                           std::pair("in the first slice", 0.5)}) {
+        StabilityCase test = lit_air("light_place", parameter,
+                                     {.position = {0.0, 0.0, -boundary_m(slice)}, .intensity_cd = glm::dvec3(10.0)});
+        test.quick = slice == 8.0;
+        cases.push_back(std::move(test));
+    }
+}
+
+void add_spots(std::vector<StabilityCase>& cases) {
+    for (const double outer_degrees : {89.0, 30.0, 1.0, 1e-2, 1e-4}) {
+        StabilityCase test =
+            lit_air("spot_angle", value_text(outer_degrees, "degrees"),
+                    {.position = {0.5, 25.0, -15.0},
+                     .intensity_cd = glm::dvec3(100.0),
+                     .cone = reference::Cone{glm::dvec3(0.0, -1.0, 0.0), 0.0, outer_degrees * degree}});
+        test.quick = outer_degrees == 1e-4 || outer_degrees == 89.0;
+        cases.push_back(std::move(test));
+    }
+}
+
+} // namespace
+
+std::vector<StabilityCase> light_cases() {
+    std::vector<StabilityCase> cases;
+    add_intensities(cases);
+    add_distances(cases);
+    add_places(cases);
+    add_spots(cases);
+    return cases;
+}
+
+} // namespace tyndall::samples
