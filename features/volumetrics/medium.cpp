@@ -80,6 +80,9 @@ bool is_directed(const Medium& medium) {
 float extinction_bound(const Medium& medium) {
     float bound = medium.homogeneous.extinction_per_m + medium.height.extinction_per_m;
     for (const LocalVolume& volume : medium.volumes) {
+        if (volume.half_size_m.x <= 0.0F || volume.half_size_m.y <= 0.0F || volume.half_size_m.z <= 0.0F) {
+            continue;
+        }
         switch (volume.blend) {
         case VolumeBlend::add: bound += volume.extinction_per_m; break;
         case VolumeBlend::max: bound = std::max(bound, volume.extinction_per_m); break;

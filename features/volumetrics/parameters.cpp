@@ -151,7 +151,14 @@ float radiance_scale_for(const FrameInputs& frame) {
         brightest += peak(phase_of(frame.medium)) * static_cast<double>(std::max({sun.x, sun.y, sun.z}));
     }
     const double largest = 32768.0; // half of fp16's, which leaves room for local lights
-    return brightest > largest ? std::exp2(-static_cast<float>(std::ceil(std::log2(brightest / largest)))) : 1.0F;
+    const double smallest = 512.0;  // radiance of fog a ten-millionth as bright still has all of fp16's digits
+    double scale = 1.0;
+    if (brightest > largest) {
+        scale = std::exp2(-std::ceil(std::log2(brightest / largest)));
+    } else if (brightest > 0.0 && brightest < smallest && frame.light_count == 0) {
+        scale = std::exp2(std::min(std::floor(std::log2(smallest / brightest)), 100.0));
+    }
+    return static_cast<float>(scale);
 }
 
 gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_count, const gpu::DepthLaw& law) {
@@ -187,8 +194,8 @@ bool is_perspective(const Camera& camera) {
 gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
     const Medium& medium = frame.medium;
     const float radiance_scale = radiance_scale_for(frame);
-    const float density_scale =
-        0.5F / std::max(extinction_bound(medium), 1e-30F); // noise at most doubles the extinction
+    // The densest at a quarter of fp16's largest, since noise at most doubles it; the thinnest 1e11 times below.
+    const float density_scale = 16384.0F / std::max(extinction_bound(medium), 1e-30F);
     const glm::dmat3 render_from_view = glm::transpose(glm::dmat3(frame.camera.view_from_render));
 
     gpu::VolumetricParameters u{};

@@ -13,6 +13,9 @@
 namespace tyndall::samples {
 namespace {
 
+/// On the far boundary of the eleventh slice, 16 (5^(11/16) - 1): what is behind the wall, in its shadow, is in no
+/// slice before it.
+constexpr double wall_m = 32.379;
 constexpr double degree = std::numbers::pi / 180.0;
 /// Froxels of the test grid agree with the exact picture within this in a smooth medium.
 constexpr double smooth_bound = 5e-3;
@@ -31,13 +34,13 @@ void add_extinctions(std::vector<StabilityCase>& cases) {
         test.quick = extinction == 1e-8 || extinction == 1.0 || extinction == 1e6;
         cases.push_back(std::move(test));
     }
-    for (const float albedo : {0.0F, 1e-6F, 0.5F, 1.0F}) {
-        StabilityCase test{.name = "albedo", .parameter = value_text(static_cast<double>(albedo))};
+    for (const double albedo : {0.0, 1e-6, 0.5, 1.0}) {
+        StabilityCase test{.name = "albedo", .parameter = value_text(albedo)};
         test.scene = fog_before_a_wall(0.05F);
-        test.scene.fog.medium.homogeneous.albedo = glm::vec3(albedo);
+        test.scene.fog.medium.homogeneous.albedo = glm::vec3(static_cast<float>(albedo));
         test.scene.sun = even_sun();
         test.bound = smooth_bound;
-        test.quick = albedo == 0.0F;
+        test.quick = albedo == 0.0;
         cases.push_back(std::move(test));
     }
 }
@@ -63,7 +66,7 @@ void add_ranges(std::vector<StabilityCase>& cases) {
         StabilityCase test{.name = "slice_length", .parameter = value_text(slice_m, "m")};
         const double range_m = 16.0 * slice_m;
         test.scene = fog_before_a_wall(static_cast<float>(1.0 / range_m));
-        const double scale = 0.9 * range_m / 30.0;
+        const double scale = 0.9 * range_m / wall_m;
         for (auto& corner : test.scene.surfaces.front().quads.front()) {
             corner *= scale;
         }
@@ -92,7 +95,7 @@ void add_views(std::vector<StabilityCase>& cases) {
     StabilityCase test{.name = "near_and_far", .parameter = "1e-3 m and 1e7 m"};
     test.scene = fog_before_a_wall(1e-7F);
     for (auto& corner : test.scene.surfaces.front().quads.front()) {
-        corner *= 9e6 / 30.0;
+        corner *= 9e6 / wall_m;
     }
     test.scene.fog.settings.grid.range_m = 1e7F;
     test.scene.fog.settings.grid.shape_m = 1e6F;
@@ -105,38 +108,59 @@ void add_views(std::vector<StabilityCase>& cases) {
     cases.push_back(std::move(test));
 }
 
+/// Metres of a ray, up to `length_m`, in a box along the axes.
+double length_in_box(const reference::Ray& ray, double length_m, const volumetrics::LocalVolume& box) {
+    double enter = 0.0;
+    double leave = length_m;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double center = static_cast<double>(box.center_m[axis]) - ray.origin[axis];
+        const double half = static_cast<double>(box.half_size_m[axis]);
+        const double toward = ray.direction[axis];
+        if (toward == 0.0) {
+            leave = std::abs(center) <= half ? leave : enter;
+        } else {
+            enter = std::max(enter, std::min((center - half) / toward, (center + half) / toward));
+            leave = std::min(leave, std::max((center - half) / toward, (center + half) / toward));
+        }
+    }
+    return std::max(0.0, leave - enter);
+}
+
 void add_volumes(std::vector<StabilityCase>& cases) {
-    const auto add = [&](const char* parameter, const volumetrics::LocalVolume& volume, double bound) {
+    using volumetrics::LocalVolume;
+    using volumetrics::VolumeBlend;
+    using volumetrics::VolumeShape;
+    constexpr double even_per_m = 0.01;
+    /// `per_m`: what is added inside the volume.
+    const auto add = [&](const char* parameter, const LocalVolume& volume, double per_m) {
         StabilityCase test{.name = "local_volume", .parameter = parameter};
-        test.scene = fog_before_a_wall(0.01F);
+        test.scene = fog_before_a_wall(static_cast<float>(even_per_m));
         test.scene.fog.medium.ambient_radiance = glm::vec3(0.5F);
         test.scene.fog.medium.volumes = {volume};
-        test.bound = bound;
+        test.closed_form = [=](const reference::Ray& ray, double length_m) {
+            const double depth = even_per_m * length_m + per_m * length_in_box(ray, length_m, volume);
+            return glm::dvec3(-0.5 * std::expm1(-depth));
+        };
+        test.bound = smooth_bound;
         test.quick = true;
         cases.push_back(std::move(test));
     };
-    using volumetrics::LocalVolume;
-    using volumetrics::VolumeShape;
     const glm::vec3 ahead(0.0F, 0.0F, -10.0F);
-    add("without extinction", LocalVolume{.center_m = ahead, .extinction_per_m = 0.0F}, smooth_bound);
-    add("box of no size", LocalVolume{.center_m = ahead, .half_size_m = glm::vec3(0.0F), .extinction_per_m = 1e6F},
-        smooth_bound);
+    const glm::vec3 huge(1e3F);
+    add("without extinction", {.center_m = ahead, .extinction_per_m = 0.0F}, 0.0);
+    add("box of no size", {.center_m = ahead, .half_size_m = glm::vec3(0.0F), .extinction_per_m = 1e6F}, 0.0);
     add("ellipsoid of no height",
-        LocalVolume{.shape = VolumeShape::ellipsoid,
-                    .center_m = ahead,
-                    .half_size_m = {5.0F, 0.0F, 5.0F},
-                    .extinction_per_m = 1e6F},
-        smooth_bound);
-    // Behind the eye and before it: the eye in the middle of a face.
-    add("the eye in its face",
-        LocalVolume{.center_m = {0.0F, 0.0F, -10.0F}, .half_size_m = glm::vec3(10.0F), .extinction_per_m = 0.1F}, 0.1);
-    add("the eye in its side",
-        LocalVolume{.center_m = {500.0F, 0.0F, 0.0F}, .half_size_m = glm::vec3(500.0F), .extinction_per_m = 0.1F}, 2.0);
-    add("the eye in it", LocalVolume{.half_size_m = glm::vec3(1e3F), .extinction_per_m = 0.1F}, smooth_bound);
-    add("subtracts all",
-        LocalVolume{
-            .blend = volumetrics::VolumeBlend::subtract, .half_size_m = glm::vec3(1e3F), .extinction_per_m = 1e6F},
-        smooth_bound);
+        {.shape = VolumeShape::ellipsoid,
+         .center_m = ahead,
+         .half_size_m = {5.0F, 0.0F, 5.0F},
+         .extinction_per_m = 1e6F},
+        0.0);
+    add("the eye in a face",
+        {.center_m = {0.0F, 0.0F, -500.0F}, .half_size_m = {1e3F, 1e3F, 500.0F}, .extinction_per_m = 0.1F}, 0.1);
+    add("the eye in a side",
+        {.center_m = {500.0F, 0.0F, 0.0F}, .half_size_m = {500.0F, 1e3F, 1e3F}, .extinction_per_m = 0.1F}, 0.1);
+    add("the eye in it", {.half_size_m = huge, .extinction_per_m = 0.1F}, 0.1);
+    add("subtracts all", {.blend = VolumeBlend::subtract, .half_size_m = huge, .extinction_per_m = 1e6F}, -even_per_m);
 }
 
 void add_shadow_maps(std::vector<StabilityCase>& cases) {
@@ -144,15 +168,19 @@ void add_shadow_maps(std::vector<StabilityCase>& cases) {
         StabilityCase test{.name = "esm_exponent",
                            .parameter = value_text(static_cast<double>(exponent)) + ", occluders 1 km off"};
         test.scene = fog_before_a_wall(0.02F);
-        // A lattice far above the air that it shadows.
-        for (int i = -6; i < 6; ++i) {
+        // Slats far above the air that they shadow; the wall as small as the view, so that the map's texels are.
+        for (auto& corner : test.scene.surfaces.front().quads.front()) {
+            corner *= glm::dvec3(0.06, 0.06, 1.0);
+        }
+        for (int i = -3; i < 3; ++i) {
             test.scene.surfaces.push_back(
-                make_box({20.0 * i, 1000.0, -400.0}, {20.0 * i + 10.0, 1001.0, 400.0}, glm::dvec3(0.0)));
+                make_box({20.0 * i + 5.0, 1000.0, -60.0}, {20.0 * i + 15.0, 1001.0, 10.0}, glm::dvec3(0.0)));
         }
         test.scene.sun = even_sun();
         test.scene.sun->direction = glm::dvec3(0.0, -1.0, 0.0);
         test.scene.fog.settings.visibility.method = volumetrics::SunVisibility::prefiltered;
         test.scene.fog.settings.shadow.esm_exponent = {exponent, exponent, exponent, exponent};
+        test.floor = 1.0; // a blurred map lights what the exact picture has in full shadow
         test.quick = exponent == 1000.0F;
         cases.push_back(std::move(test));
     }
@@ -185,7 +213,7 @@ void add_furnaces(std::vector<StabilityCase>& cases) {
             test.scene.fog.medium.ambient_radiance = glm::vec3(3.0F);
             test.scene.surroundings.zenith = test.scene.surroundings.horizon = test.scene.surroundings.ground =
                 glm::dvec3(3.0);
-            test.closed_form = glm::dvec3(3.0);
+            test.closed_form = [](const reference::Ray&, double) { return glm::dvec3(3.0); };
             test.bound = storage == StorageFormat::fp32 ? 1e-4 : 1e-3;
             test.quick = depth == 1e-6 || depth == 1.0 || depth == 1e6;
             cases.push_back(std::move(test));
@@ -221,15 +249,16 @@ std::string value_text(double value, const std::string& unit) {
 
 PrecisionScene fog_before_a_wall(float extinction_per_m) {
     PrecisionScene scene;
-    const double far = 1000.0;
-    scene.surfaces = {{{{glm::dvec3(-far, -far, -30.0), glm::dvec3(far, -far, -30.0), glm::dvec3(far, far, -30.0),
-                         glm::dvec3(-far, far, -30.0)}},
+    constexpr double half = 1000.0;
+    scene.surfaces = {{{{glm::dvec3(-half, -half, -wall_m), glm::dvec3(half, -half, -wall_m),
+                         glm::dvec3(half, half, -wall_m), glm::dvec3(-half, half, -wall_m)}},
                        glm::dvec3(0.0)}};
     scene.fog.medium.homogeneous = {.extinction_per_m = extinction_per_m, .albedo = glm::vec3(1.0F)};
     volumetrics::GridSettings& grid = scene.fog.settings.grid;
     grid.width = 40;
     grid.height = 23;
     grid.slices = 16;
+    scene.fog.settings.visibility.method = volumetrics::SunVisibility::lit_fraction; // the wall's own shadow is sharp
     scene.camera.fov_y_rad = 50.0 * degree;
     return scene;
 }

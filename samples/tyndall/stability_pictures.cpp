@@ -1,6 +1,7 @@
 #include "samples/tyndall/stability_pictures.hpp"
 
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "samples/tyndall/frame_loop.hpp"
@@ -60,13 +61,18 @@ tl::expected<StabilityPicture, std::string> take_picture(const engine::Device& d
 
 std::vector<glm::dvec3> exact_picture(const StabilityCase& test) {
     const std::vector<reference::Pixel> pixels = reference::all_pixels(stability_picture_size);
-    if (test.closed_form) {
-        return std::vector<glm::dvec3>(pixels.size(), *test.closed_form);
-    }
+    const reference::Scene scene = reference_scene(test.scene, test.physics);
     std::vector<glm::dvec3> exact;
-    for (const reference::Estimate& estimate :
-         reference::render(reference_scene(test.scene, test.physics), test.scene.camera, stability_picture_size, pixels,
-                           {.relative = 1e-6, .absolute = 1e-30})) {
+    if (test.closed_form) {
+        for (const reference::Pixel& pixel : pixels) {
+            const reference::Ray ray = reference::pixel_ray(test.scene.camera, stability_picture_size, pixel);
+            const auto wall = scene.geometry.hit(ray);
+            exact.push_back(test.closed_form(ray, wall ? wall->distance_m : std::numeric_limits<double>::infinity()));
+        }
+        return exact;
+    }
+    for (const reference::Estimate& estimate : reference::render(scene, test.scene.camera, stability_picture_size,
+                                                                 pixels, {.relative = 1e-6, .absolute = 1e-30})) {
         exact.push_back(estimate.value);
     }
     return exact;

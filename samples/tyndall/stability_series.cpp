@@ -51,7 +51,7 @@ Rows brighten(const engine::Device& device, bool quick) {
         }
         if (!before.empty()) {
             rows.push_back(
-                row_of(test, *picture, "change of radiance per lux", worst_relative_error(per_lux, before), 5e-3));
+                row_of(test, *picture, "change of radiance per lux", worst_relative_error(per_lux, before), 1e-3));
         }
         before = std::move(per_lux);
     }
@@ -73,7 +73,7 @@ Rows leak(const engine::Device& device, bool quick) {
                                  {"ESM exponent 1000", SunVisibility::prefiltered, 1000.0F},
                                  {"lit fraction", SunVisibility::lit_fraction, 400.0F}}) {
         for (const double froxels : {0.1, 0.5, 1.0, 2.0, 4.0}) {
-            if (quick && (froxels != 0.1 || method.exponent == 40.0F)) {
+            if (quick && ((froxels != 0.1 && froxels != 2.0) || method.exponent == 40.0F)) {
                 continue;
             }
             StabilityCase test{.name = "leak",
@@ -103,7 +103,12 @@ Rows leak(const engine::Device& device, bool quick) {
             for (std::size_t i = 0; i < exact.size(); ++i) {
                 worst = std::max(worst, (picture->radiance[i].r / exact[i].r - 1.0) / outside);
             }
-            rows.push_back(row_of(test, *picture, "of the light outside that leaks in", worst, 1e-2));
+            // A wall within a froxel cannot be told from the air on both sides of it.
+            rows.push_back(row_of(test, *picture, "part of the light outside in it", worst,
+                                  froxels >= 2.0   ? 2e-4
+                                  : froxels >= 1.0 ? 1e-2
+                                  : froxels >= 0.5 ? 3e-2
+                                                   : 0.2));
         }
     }
     return rows;

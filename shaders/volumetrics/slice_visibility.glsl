@@ -38,15 +38,20 @@ float tap_visibility(sampler2DArray cascades, vec3 p, float layer, float size) {
     return clamp(p.z, 0.0, 1.0) <= occluder ? 1.0 : 0.0;
 }
 
-// The mean of `count` taps at even distances along the segment, the first at `offset` of a distance from its near end.
+// The mean of `count` taps at even distances along the segment, the first at `offset` of a distance from its near end;
+// those beside the map count nothing. A long slice reaches beyond the cascade that its sample lies in, and were lit there
+// the light would leak into closed rooms.
 float taps_visibility(sampler2DArray cascades, ShadowSegment segment, float size, uint count, float offset) {
     float sum = 0.0;
+    float taken = 0.0;
     for (uint i = 0u; i < count; ++i) {
         vec3 p = mix(segment.near, segment.far, (float(i) + offset) / float(count));
-        bool inside = all(equal(p.xy, clamp(p.xy, 0.0, 1.0)));
-        sum += inside ? tap_visibility(cascades, p, segment.layer, size) : 1.0;
+        if (all(equal(p.xy, clamp(p.xy, 0.0, 1.0)))) {
+            sum += tap_visibility(cascades, p, segment.layer, size);
+            taken += 1.0;
+        }
     }
-    return sum / float(count);
+    return taken > 0.0 ? sum / taken : 1.0;
 }
 
 // The part of an interval over which depth goes from a to b that does not lie behind `occluder`.
@@ -58,7 +63,7 @@ float part_before(float occluder, float a, float b) {
 
 // The part of the segment's length that is lit: exact for the shadow map's own geometry, each texel a column that ends at
 // its occluder. Walks the texels that the segment crosses (Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for
-// Ray Tracing"); what lies beside the map is lit.
+// Ray Tracing"); what lies beside the map is taken to be lit as the part in it.
 float lit_part(sampler2DArray cascades, ShadowSegment segment, float size) {
     vec3 span = segment.far - segment.near;
     // The part inside the map.
@@ -69,6 +74,7 @@ float lit_part(sampler2DArray cascades, ShadowSegment segment, float size) {
     vec2 leave = max(to_low, to_high);
     float t = clamp(max(enter.x, enter.y), 0.0, 1.0);
     float end = clamp(min(leave.x, leave.y), t, 1.0);
+    float inside = end - t;
 
     vec2 start = clamp((segment.near.xy + t * span.xy) * size, 0.0, size);
     vec2 stop = clamp((segment.near.xy + end * span.xy) * size, 0.0, size);
@@ -78,7 +84,7 @@ float lit_part(sampler2DArray cascades, ShadowSegment segment, float size) {
     vec2 t_step = abs(inverse) / size;
     vec2 t_edge = ((texel + 0.5 + 0.5 * heading) / size - segment.near.xy) * inverse; // where it leaves the texel
     int crossings = int(abs(last.x - texel.x) + abs(last.y - texel.y));
-    float lit = 1.0 - (end - t);
+    float lit = 0.0;
     for (int i = 0; i <= crossings; ++i) {
         bool in_x = t_edge.x < t_edge.y;
         float t_next = i == crossings ? end : clamp(in_x ? t_edge.x : t_edge.y, t, end);
@@ -90,7 +96,7 @@ float lit_part(sampler2DArray cascades, ShadowSegment segment, float size) {
         texel += in_x ? vec2(heading.x, 0.0) : vec2(0.0, heading.y);
         t_edge += in_x ? vec2(t_step.x, 0.0) : vec2(0.0, t_step.y);
     }
-    return lit;
+    return inside > 0.0 ? min(lit / inside, 1.0) : 1.0;
 }
 
 // Visibility of the sun, 0 to 1, in a slice of the ray whose sample lies at `depth_m` of view depth. The first cascade

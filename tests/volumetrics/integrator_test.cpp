@@ -163,6 +163,7 @@ protected:
 
         FrameInputs inputs;
         inputs.settings = settings;
+        inputs.medium.homogeneous.extinction_per_m = 1.0F; // of which coefficients are stored in parts
         const std::uint32_t slices = settings.grid.slices;
         const gpu::VolumetricParameters parameters = volumetric_parameters(inputs, std::nullopt);
         const std::size_t texels = std::size_t{width} * height;

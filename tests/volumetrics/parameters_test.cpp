@@ -131,8 +131,32 @@ TEST(Parameters, RadianceScaleKeepsTheForwardPeakInHalfPrecision) {
     EXPECT_LT(peak * scale, 65504.0);
     EXPECT_GT(peak * scale, 10000.0);
     EXPECT_EQ(std::exp2(std::round(std::log2(scale))), scale);
-    frame.sun->illuminance_lux = glm::vec3(10.0F);
+    frame.sun->illuminance_lux = glm::vec3(100.0F);
     EXPECT_EQ(radiance_scale_for(frame), 1.0F);
+}
+
+TEST(Parameters, DimFogAndThinFogKeepTheDigitsOfHalfPrecision) {
+    FrameInputs frame;
+    frame.medium.homogeneous.extinction_per_m = 1e-8F;
+    frame.medium.ambient_radiance = glm::vec3(1e-9F);
+    const double scale = static_cast<double>(radiance_scale_for(frame));
+    EXPECT_GE(1e-9 * scale, 256.0);
+    EXPECT_LE(1e-9 * scale, 512.0);
+    frame.light_count = 1; // whose radiance is not known here
+    EXPECT_EQ(radiance_scale_for(frame), 1.0F);
+    frame.light_count = 0;
+    frame.medium.ambient_radiance = glm::vec3(0.0F);
+    EXPECT_EQ(radiance_scale_for(frame), 1.0F);
+
+    const auto density_scale = [&] {
+        return static_cast<double>(volumetric_parameters(frame, std::nullopt).density_scale.x);
+    };
+    EXPECT_NEAR(1e-8 * density_scale(), 16384.0, 1.0);
+    // A volume of no size, however dense, takes nothing from the digits of the fog that is there.
+    frame.medium.volumes = {{.half_size_m = {1.0F, 0.0F, 1.0F}, .extinction_per_m = 1e6F}};
+    EXPECT_NEAR(1e-8 * density_scale(), 16384.0, 1.0);
+    frame.medium.volumes[0].half_size_m.y = 1e-6F;
+    EXPECT_NEAR(1e6 * density_scale(), 16384.0, 1.0);
 }
 
 TEST(Parameters, NoiseStaysPreciseFarFromTheOriginAndLate) {
