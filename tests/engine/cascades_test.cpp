@@ -3,33 +3,15 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "engine/camera.hpp"
+#include "tests/random_geometry.hpp"
 
 namespace tyndall::engine {
 namespace {
-
-class Dice {
-public:
-    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-    glm::dvec3 point(double reach) { return {between(-reach, reach), between(-reach, reach), between(-reach, reach)}; }
-    glm::dvec3 direction() {
-        for (;;) {
-            const glm::dvec3 p = point(1.0);
-            const double length = glm::length(p);
-            if (length > 0.1 && length < 1.0) {
-                return p / length;
-            }
-        }
-    }
-
-private:
-    std::mt19937_64 engine_{7};
-};
 
 Camera looking(const glm::dvec3& eye, const glm::dvec3& along) {
     const glm::dvec3 up = std::abs(along.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
@@ -61,15 +43,15 @@ std::array<glm::dvec3, 8> corners(const Box& box) {
 }
 
 TEST(Cascades, HoldEveryPointOfTheirSliceWithRoomForTheFilter) {
-    Dice dice;
+    test::RandomGeometry dice(7);
     for (int round = 0; round < 300; ++round) {
         Camera camera = looking(dice.point(200.0), dice.direction());
-        camera.perspective.fov_y_rad = dice.between(0.1, 2.2);
+        camera.perspective.fov_y_rad = dice.in(0.1, 2.2);
         if (round % 5 == 0) {
-            camera.orthographic = Orthographic{dice.between(1.0, 30.0), dice.between(1.0, 30.0), 0.0, 80.0};
+            camera.orthographic = Orthographic{dice.in(1.0, 30.0), dice.in(1.0, 30.0), 0.0, 80.0};
         }
         const FrameView view = make_view(camera, size);
-        const Box casters = box_around(dice.point(50.0), dice.between(0.5, 60.0));
+        const Box casters = box_around(dice.point(50.0), dice.in(0.5, 60.0));
         const CascadesFit fit = fit_cascades(view, casters, dice.direction(), {});
         const ViewRays rays = view_rays(view);
         const glm::dmat4 render_from_view = glm::inverse(view.view_from_render);
@@ -94,7 +76,7 @@ TEST(Cascades, HoldEveryPointOfTheirSliceWithRoomForTheFilter) {
 }
 
 TEST(Cascades, PointsOfTheWorldKeepTheirPlaceInTheTexelWhateverTheCameraDoes) {
-    Dice dice;
+    test::RandomGeometry dice(7);
     const Box casters = box_around({3.0, 2.0, -4.0}, 20.0);
     const glm::dvec3 sun = glm::normalize(glm::dvec3(-0.5, -0.7, 0.3));
     const glm::dvec3 landmark(1.234, 0.5, -2.718);
@@ -135,9 +117,9 @@ TEST(Cascades, StayWhereTheyAreForMovementsWithinATexel) {
 }
 
 TEST(Cascades, DepthSpansAllCasters) {
-    Dice dice;
+    test::RandomGeometry dice(7);
     for (int round = 0; round < 300; ++round) {
-        Box casters = box_around(dice.point(1000.0), dice.between(1e-3, 300.0));
+        Box casters = box_around(dice.point(1000.0), dice.in(1e-3, 300.0));
         if (round % 3 == 0) {
             casters.max.y = casters.min.y; // flat
         }
@@ -166,20 +148,20 @@ TEST(Cascades, SlicesFollowEachOtherUpToTheRange) {
 }
 
 TEST(Cascades, NoCasterIsLeftOutThatShadowsTheSlice) {
-    Dice dice;
+    test::RandomGeometry dice(7);
     int left_out = 0;
     for (int round = 0; round < 400; ++round) {
         const FrameView view = make_view(looking(dice.point(20.0), dice.direction()), size);
         const Box casters = box_around({}, 60.0);
         const CascadesFit fit = fit_cascades(view, casters, dice.direction(), {});
-        const Box caster = box_around(dice.point(55.0), dice.between(0.1, 5.0));
+        const Box caster = box_around(dice.point(55.0), dice.in(0.1, 5.0));
         for (std::uint32_t i = 0; i < fit.count; ++i) {
             if (may_cast_into(fit, i, caster)) {
                 continue;
             }
             ++left_out;
             for (int sample = 0; sample < 30; ++sample) {
-                const glm::dvec3 t(dice.between(0.0, 1.0), dice.between(0.0, 1.0), dice.between(0.0, 1.0));
+                const glm::dvec3 t(dice.in(0.0, 1.0), dice.in(0.0, 1.0), dice.in(0.0, 1.0));
                 const glm::dvec3 point = caster.min + t * caster.extent();
                 const glm::dvec3 p = in_shadow_space(fit, i, point);
                 const bool across = std::min(p.x, p.y) < 0.0 || std::max(p.x, p.y) > 1.0;
@@ -229,12 +211,12 @@ TEST(Camera, DepthIsReversedAndTheFarPlaneIsFound) {
 }
 
 TEST(Camera, RaysPassThroughThePixelsThatPointsFallOn) {
-    Dice dice;
+    test::RandomGeometry dice(7);
     const FrameView view = make_view(looking({5.0, 1.0, 2.0}, glm::normalize(glm::dvec3(1.0, -0.4, 0.2))), size);
     const ViewRays rays = view_rays(view);
     for (int round = 0; round < 100; ++round) {
-        const glm::dvec2 uv(dice.between(0.0, 1.0), dice.between(0.0, 1.0));
-        const double depth_m = dice.between(0.2, 100.0);
+        const glm::dvec2 uv(dice.in(0.0, 1.0), dice.in(0.0, 1.0));
+        const double depth_m = dice.in(0.2, 100.0);
         const glm::dvec3 p = depth_m * (rays.origin + uv.x * rays.u + uv.y * rays.v);
         const glm::dvec4 clip = view.clip_from_view * view.view_from_render * glm::dvec4(p, 1.0);
         EXPECT_NEAR(clip.x / clip.w * 0.5 + 0.5, uv.x, 1e-9);

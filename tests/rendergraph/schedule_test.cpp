@@ -139,47 +139,41 @@ TEST_F(Scheduling, ARequestIsARequest) {
     EXPECT_EQ(queue_of(compiled_with(stays.desc, costs(2 * ms, 3 * ms, 1 * ms)), 0), 0U);
 }
 
-TEST_F(Scheduling, AnImportThatTheHostDoesNotShareStaysInItsFamily) {
+/// Clusters from an import, resource 0, beside opaque work; then both meet.
+DeclaredGraph clusters_from(const ImportDesc& import, QueueWish wish = QueueWish::automatic) {
     GraphBuilder graph;
-    Buffer shared = graph.import_buffer("lights", {.size_bytes = 64}, {.read_only = true});
+    Buffer lights = graph.import_buffer("lights", {.size_bytes = 64}, import);
     Image output = graph.import_image("output", color_image(), left_for_host());
     Buffer list = graph.create_buffer("list", {.size_bytes = 64});
     graph.add_pass("cluster", PassKind::compute)
-        .reads(shared, Access::storage_compute)
-        .writes(list, Access::storage_compute);
+        .reads(lights, Access::storage_compute)
+        .writes(list, Access::storage_compute)
+        .on_queue(wish);
     graph.add_pass("opaque", PassKind::graphics).writes(output, Access::color_attachment);
     graph.add_pass("apply", PassKind::graphics)
         .reads(list, Access::storage_fragment)
         .modifies(output, Access::color_attachment);
-    DeclaredGraph declared = graph.finish();
+    return graph.finish();
+}
+
+TEST_F(Scheduling, AnImportThatTheHostDoesNotShareStaysInItsFamily) {
+    DeclaredGraph declared = clusters_from({.read_only = true});
     const Costs worth_it = costs(2 * ms, 3 * ms, 1 * ms);
     const Plan apart = compiled_with(declared.desc, worth_it);
     EXPECT_EQ(queue_of(apart, 0), 0U);
     EXPECT_EQ(apart.passes[0].queue_reason, QueueReason::import_not_shared);
     EXPECT_EQ(queue_of(compiled_with(declared.desc, worth_it, nullptr, two_queues_one_family()), 0), 1U);
-    declared.desc.resources[shared.resource].concurrent = true;
+    declared.desc.resources[0].concurrent = true;
     EXPECT_EQ(queue_of(compiled_with(declared.desc, worth_it), 0), 1U);
 }
 
 TEST_F(Scheduling, AnImportThatOnlyTheFirstQueueComesAfterStaysThere) {
     for (const QueueWish wish : {QueueWish::automatic, QueueWish::async_compute}) {
-        GraphBuilder graph;
-        Buffer before = graph.import_buffer("uploaded", {.size_bytes = 64},
-                                            {.initial_stages = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                             .initial_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                             .read_only = true});
-        graph.share_between_queues(before);
-        Image output = graph.import_image("output", color_image(), left_for_host());
-        Buffer list = graph.create_buffer("list", {.size_bytes = 64});
-        graph.add_pass("cluster", PassKind::compute)
-            .reads(before, Access::storage_compute)
-            .writes(list, Access::storage_compute)
-            .on_queue(wish);
-        graph.add_pass("opaque", PassKind::graphics).writes(output, Access::color_attachment);
-        graph.add_pass("apply", PassKind::graphics)
-            .reads(list, Access::storage_fragment)
-            .modifies(output, Access::color_attachment);
-        DeclaredGraph declared = graph.finish();
+        DeclaredGraph declared = clusters_from({.initial_stages = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                                .initial_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                                .read_only = true},
+                                               wish);
+        declared.desc.resources[0].concurrent = true;
         const Costs worth_it = costs(2 * ms, 3 * ms, 1 * ms);
         const Plan plan = compiled_with(declared.desc, worth_it);
         EXPECT_EQ(queue_of(plan, 0), 0U);

@@ -3,38 +3,18 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <random>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "features/volumetrics/reference/geometry.hpp"
 #include "features/volumetrics/reference/noise.hpp"
+#include "tests/random_geometry.hpp"
 
 namespace tyndall::volumetrics::reference {
 namespace {
 
-class Random {
-public:
-    [[nodiscard]] double in(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine_);
-    }
-    [[nodiscard]] glm::dvec3 point(double reach) { return {in(-reach, reach), in(-reach, reach), in(-reach, reach)}; }
-    [[nodiscard]] glm::dvec3 direction() {
-        for (;;) {
-            const glm::dvec3 p = point(1.0);
-            const double length = glm::length(p);
-            if (length > 0.1 && length < 1.0) {
-                return p / length;
-            }
-        }
-    }
-
-private:
-    std::mt19937 engine_{5};
-};
-
-std::vector<Triangle> soup(Random& random, int count, double size) {
+std::vector<Triangle> soup(test::RandomGeometry& random, int count, double size) {
     std::vector<Triangle> triangles;
     for (int i = 0; i < count; ++i) {
         const glm::dvec3 p = random.point(10.0);
@@ -61,7 +41,7 @@ double distance_to_end(const std::vector<Interval>& parts, double t) {
 }
 
 TEST(ReferenceGeometry, LitPartsAreWhatEmbreeSees) {
-    Random random;
+    test::RandomGeometry random(5);
     for (const int count : {1, 30, 400}) {
         const Geometry geometry(soup(random, count, 40.0 / count + 2.0));
         int lit = 0;
@@ -110,7 +90,7 @@ TEST(ReferenceGeometry, NeighboursLeaveNoGap) {
         }
     }
     const Geometry geometry(std::move(sheet));
-    Random random;
+    test::RandomGeometry random(5);
     for (int i = 0; i < 200; ++i) {
         const Ray ray{{random.in(-1.0, 1.0), random.in(0.0, 1.0), random.in(-1.0, 1.0)},
                       glm::normalize(glm::dvec3(random.in(0.5, 1.0), 0.1, random.in(-1.0, 1.0)))};
@@ -136,7 +116,7 @@ TEST(ReferenceGeometry, RaysThroughTheLight) {
 }
 
 TEST(ReferenceNoise, IsSmoothPeriodicAndNothingAtLatticePoints) {
-    Random random;
+    test::RandomGeometry random(5);
     double sum = 0.0;
     double squares = 0.0;
     constexpr int count = 20000;
