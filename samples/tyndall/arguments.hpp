@@ -95,6 +95,7 @@ struct PrecisionArguments {
     std::optional<double> error;                 ///< choose the cheapest within this relative L2 error
     std::optional<double> budget_ms;             ///< choose the most exact that takes no longer, fog's passes
     bool causes = false;                         ///< measure too what removing one cause of error at a time leaves
+    bool orders = false;                         ///< print the integrators' orders of convergence, and nothing else
     bool airlight = false;                       ///< surfaces are black: the fog alone is judged
     std::optional<std::filesystem::path> folder; ///< for precision.csv and precision.json
     std::string device;

@@ -12,6 +12,7 @@
 #include "engine/file_io.hpp"
 #include "samples/precision/choice.hpp"
 #include "samples/precision/metrics.hpp"
+#include "samples/precision/orders.hpp"
 #include "samples/precision/scene.hpp"
 #include "samples/tyndall/arguments.hpp"
 #include "samples/tyndall/frame_loop.hpp"
@@ -326,6 +327,10 @@ int run_precision(const PrecisionArguments& arguments) {
         std::fprintf(stderr, "tyndall: %s\n", sentence.c_str());
         return code;
     };
+    if (arguments.orders) {
+        std::fputs(to_table(measured_orders()).c_str(), stdout);
+        return exit_ok;
+    }
     if (arguments.folder) {
         std::error_code error;
         std::filesystem::create_directories(*arguments.folder, error);

@@ -152,6 +152,24 @@ TEST_F(ClosedForm, ExponentialHeightFog) {
     }
 }
 
+TEST_F(ClosedForm, HeightFogIsTheMeanOverEachSliceAlsoAcrossTheBase) {
+    Scene scene = plain_scene();
+    scene.inputs.settings.grid = {.width = 16, .height = 9, .slices = 16, .range_m = 64.0F, .shape_m = 16.0F};
+    scene.inputs.camera.origin_m = {0.0, 5.0, 0.0};
+    scene.inputs.medium.height = {.extinction_per_m = 0.05F, .base_height_m = 1.0F, .falloff_per_m = 3.0F};
+    const Result result = render(scene);
+    const double scale = static_cast<double>(volumetric_parameters(scene.inputs, std::nullopt).density_scale.y);
+    const auto boundary_m = [](double k) { return 16.0 * (std::pow(5.0, k / 16.0) - 1.0); };
+    for (std::uint32_t i = 0; i < result.density.size(); ++i) {
+        const std::uint32_t slice = i / (16 * 9);
+        const double slope = (1.0 - 2.0 * (i / 16 % 9) / 8.0) * tan_y;
+        const double near_depth = boundary_m(slice);
+        const double length = boundary_m(slice + 1.0) - near_depth;
+        const double expected = height_optical_depth(5.0 + slope * near_depth, slope, length, 0.05, 3.0, 1.0) / length;
+        ASSERT_NEAR(static_cast<double>(result.density[i].a) * scale, expected, 1e-5 * expected + 1e-8) << i;
+    }
+}
+
 TEST_F(ClosedForm, CornerRayIsLongerThanCentreRay) {
     Scene scene = plain_scene();
     scene.inputs.medium.homogeneous = {.extinction_per_m = 1e-4F, .albedo = glm::vec3(1.0F)};

@@ -136,6 +136,41 @@ TEST_F(SunShadow, HalfSpaceUnderARoofIsDarkAndTheRestIsLit) {
     EXPECT_GT(lit_count, 100000U);
 }
 
+TEST_F(SunShadow, IsTheBilinearMeanOfTheFourTexelsAround) {
+    constexpr double extent_m = 140.0;
+    Scene scene = sunlit_scene(static_cast<float>(extent_m));
+    scene.inputs.settings.grid = {.width = 40, .height = 23, .slices = 16, .range_m = 64.0F, .shape_m = 16.0F};
+    scene.inputs.settings.shadow.esm_size = 32;
+    scene.inputs.settings.shadow.esm_exponent = {40.0F, 40.0F, 40.0F, 40.0F};
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> depth(0.4F, 0.6F);
+    for (float& texel : scene.cascade_depths) {
+        texel = depth(random);
+    }
+    const std::size_t layer = std::size_t{scene.cascade_size} * scene.cascade_size;
+    for (std::size_t i = layer; i < scene.cascade_depths.size(); ++i) {
+        scene.cascade_depths[i] = scene.cascade_depths[i - layer];
+    }
+    const Result result = render(scene);
+    const EsmReference reference(scene, 32, 0);
+    for (std::uint32_t i = 0; i < result.in_scattered.size(); ++i) {
+        const glm::dvec3 p = froxel_centre(scene, i % 40, i / 40 % 23, i / (40 * 23));
+        const double x = (0.5 + p.x / extent_m) * 32.0 - 0.5;
+        const double y = (0.5 + p.z / extent_m) * 32.0 - 0.5;
+        const auto texel = [&](int dx, int dy) {
+            const double log =
+                reference.log_at(static_cast<int>(std::floor(x)) + dx, static_cast<int>(std::floor(y)) + dy);
+            return std::exp(log - 40.0 * std::clamp(0.5 - p.y / extent_m, 0.0, 1.0));
+        };
+        const double fx = x - std::floor(x);
+        const double fy = y - std::floor(y);
+        const double expected = std::min(1.0, (1.0 - fy) * ((1.0 - fx) * texel(0, 0) + fx * texel(1, 0)) +
+                                                  fy * ((1.0 - fx) * texel(0, 1) + fx * texel(1, 1)));
+        const double found = static_cast<double>(result.in_scattered[i].r) * 4.0 * 3.14159265358979 / 10.0;
+        ASSERT_NEAR(found, expected, 2e-3) << p.x << " " << p.y << " " << p.z;
+    }
+}
+
 TEST_F(SunShadow, PointsAboveTheOccluderAreLit) {
     Scene scene = sunlit_scene(140.0F);
     scene.cascade_depths.assign(scene.cascade_depths.size(), 0.5F); // a floor at the camera's height, everywhere

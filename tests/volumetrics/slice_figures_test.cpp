@@ -8,13 +8,17 @@
 #include <random>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
 #include <gtest/gtest.h>
 
 #include "features/volumetrics/reference/render.hpp"
-#include "tests/volumetrics/integrator_twin.hpp"
+#include "samples/precision/integrator_twin.hpp"
 
 namespace tyndall::volumetrics::test {
 namespace {
+
+using samples::integrate;
+using samples::TwinSlice;
 
 TEST(SliceFigures, OneSliceOfAConstantMedium) {
     struct Row {
@@ -31,6 +35,64 @@ TEST(SliceFigures, OneSliceOfAConstantMedium) {
         EXPECT_NEAR(integrate(Integrator::half_slice, slice).radiance / exact, half_slice, 0.005) << x;
         EXPECT_NEAR(integrate(Integrator::exponential, slice).radiance / exact, 1.0, 1e-14) << x;
     }
+}
+
+TEST(SliceFigures, WhatSinglePrecisionLeavesOfThinAir) {
+    // (1 - T) / sigma over a slice of 0.25 m, where the exact value is all but 0.25 m.
+    const auto weight = [](float sigma) { return (1.0F - std::exp(-sigma * 0.25F)) / sigma; };
+    EXPECT_NEAR(weight(1e-6F) / 0.25F, 0.95F, 0.01F);
+    EXPECT_EQ(weight(1e-7F), 0.0F);
+}
+
+TEST(SliceFigures, WhatHalfPrecisionLeavesOfTransmittance) {
+    const auto stored = [](double depth) {
+        return glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(std::exp(-depth))));
+    };
+    EXPECT_EQ(stored(2.4e-4), 1.0F);
+    EXPECT_LT(stored(2.5e-4), 1.0F);
+}
+
+TEST(SliceFigures, WhatLinearInterpolationLosesAtMidSlice) {
+    const auto radiance = [](double x) { return 0.5 * -std::expm1(-x) / -std::expm1(-0.5 * x); };
+    EXPECT_NEAR(1.0 - radiance(1.0), 0.20, 0.005);
+    EXPECT_NEAR(1.0 - radiance(4.0), 0.43, 0.005);
+    EXPECT_NEAR(0.5 * (1.0 + std::exp(-1.0)) / std::exp(-0.5), 1.13, 0.005);
+}
+
+TEST(SliceFigures, ASampleBesideALightIsSeveralTimesTooBright) {
+    // 5 cm from the middle of a slice of 1 m: 1 / h^2 to the mean of 1 / d^2.
+    constexpr double h = 0.05;
+    const auto mean = [&](double a, double b) { return (std::atan(b / h) - std::atan(a / h)) / h; };
+    EXPECT_NEAR(1.0 / (h * h) / mean(-0.5, 0.5), 6.8, 0.05);
+    // From the slice's middle to its boundary the light's distance from the sample grows.
+    EXPECT_GT(1.0 / (h * h) / (1.0 / (h * h + 0.5 * 0.5)), 40.0);
+}
+
+TEST(SliceFigures, ACornerRaysLengthByItsDepth) {
+    const double corner = std::sqrt(1.0 + 1.0 + 0.5625 * 0.5625); // 16:9, 90 degrees across
+    EXPECT_NEAR(1.0 - 1.0 / corner, 0.34, 0.005);
+}
+
+TEST(SliceFigures, HenyeyGreensteinByTheBookInSinglePrecision) {
+    // g = 0.999: its integral over the sphere, the denominator as 1 + g^2 - 2 g cos, the angle in single precision.
+    const auto integral = [](auto g) {
+        using Real = decltype(g);
+        double sum = 0.0;
+        constexpr int count = 2000000;
+        for (int i = 0; i < count; ++i) {
+            // Equal steps of ln(2e-8 + theta), where the peak is narrow.
+            const auto theta_at = [](double k) { return 1e-8 * (std::pow(3.14159265358979 / 1e-8, k / count) - 1.0); };
+            const double theta = theta_at(i + 0.5);
+            const double step = theta_at(i + 1.0) - theta_at(i);
+            const Real cosine = std::cos(static_cast<Real>(theta));
+            const Real spread = Real(1) + g * g - Real(2) * g * cosine;
+            const Real phase = (Real(1) - g * g) / (Real(2) * spread * std::sqrt(spread));
+            sum += static_cast<double>(phase) * std::sin(theta) * step;
+        }
+        return sum;
+    };
+    EXPECT_NEAR(integral(0.999), 1.0, 1e-4);
+    EXPECT_NEAR(integral(0.999F), 0.965, 0.02);
 }
 
 /// A roof of slats 0.3 to 1.7 m wide, as far apart, 10 m above; a slanting sun.

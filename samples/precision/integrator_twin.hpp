@@ -5,7 +5,7 @@
 
 #include "features/volumetrics/lighting_settings.hpp"
 
-namespace tyndall::volumetrics::test {
+namespace tyndall::samples {
 
 /// What the volumes hold of one slice of a column.
 struct TwinSlice {
@@ -21,6 +21,6 @@ struct TwinResult {
 
 /// The radiance toward the eye and the optical depth of the whole column; at least 3 slices, each longer than the one
 /// before it by the same ratio.
-[[nodiscard]] TwinResult integrate(Integrator integrator, const std::vector<TwinSlice>& slices);
+[[nodiscard]] TwinResult integrate(volumetrics::Integrator integrator, const std::vector<TwinSlice>& slices);
 
-} // namespace tyndall::volumetrics::test
+} // namespace tyndall::samples

@@ -1,11 +1,13 @@
-#include "tests/volumetrics/integrator_twin.hpp"
+#include "samples/precision/integrator_twin.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-namespace tyndall::volumetrics::test {
+namespace tyndall::samples {
 namespace {
+
+using volumetrics::Integrator;
 
 /// A middle on the axis of optical depth, measured from the near side of the slice that is integrated.
 struct Node {
@@ -90,7 +92,7 @@ private:
 
 } // namespace
 
-TwinResult integrate(Integrator integrator, const std::vector<TwinSlice>& slices) {
+TwinResult integrate(volumetrics::Integrator integrator, const std::vector<TwinSlice>& slices) {
     const Parabola parabola(slices);
     TwinResult sum;
     for (std::size_t k = 0; k < slices.size(); ++k) {
@@ -110,4 +112,4 @@ TwinResult integrate(Integrator integrator, const std::vector<TwinSlice>& slices
     return sum;
 }
 
-} // namespace tyndall::volumetrics::test
+} // namespace tyndall::samples
