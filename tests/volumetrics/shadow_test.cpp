@@ -171,6 +171,44 @@ TEST_F(SunShadow, IsTheBilinearMeanOfTheFourTexelsAround) {
     }
 }
 
+TEST_F(SunShadow, LitFractionIsThatOfTheSliceWhereverItsSampleLies) {
+    // Stripes across the view: how much of a slice they light does not depend on x and y.
+    Scene scene = sunlit_scene(140.0F);
+    scene.inputs.settings.grid = {.width = 16, .height = 9, .slices = 16, .range_m = 64.0F, .shape_m = 16.0F};
+    scene.inputs.settings.visibility.method = SunVisibility::lit_fraction;
+    for (std::size_t i = 0; i < scene.cascade_depths.size(); ++i) {
+        scene.cascade_depths[i] = i / scene.cascade_size % scene.cascade_size % 3 == 0 ? 0.0F : 1.0F;
+    }
+    const Result at_centres = render(scene);
+    scene.inputs.settings.temporal.jitter = true;
+    const Result jittered = render(scene);
+    for (std::size_t i = 0; i < jittered.in_scattered.size(); ++i) {
+        ASSERT_NEAR(jittered.in_scattered[i].r, at_centres.in_scattered[i].r, 1e-3F) << i;
+    }
+}
+
+TEST_F(SunShadow, SlicesThatReachBeyondTheirCascadeLetNoLightIn) {
+    // Dark as far as the map reaches, 10 m around the eye; the slices there are 3 m long.
+    Scene scene = sunlit_scene(20.0F);
+    scene.inputs.settings.grid = {.width = 16, .height = 9, .slices = 16, .range_m = 64.0F, .shape_m = 16.0F};
+    scene.cascade_depths.assign(scene.cascade_depths.size(), 0.0F);
+    for (const SunVisibility method : {SunVisibility::lit_fraction, SunVisibility::n_taps}) {
+        scene.inputs.settings.visibility.method = method;
+        const Result result = render(scene);
+        std::size_t dark = 0;
+        for (std::uint32_t i = 0; i < result.in_scattered.size(); ++i) {
+            const glm::dvec3 p = glm::abs(froxel_centre(scene, i % 16, i / 16 % 9, i / (16 * 9)));
+            if (std::max({p.x, p.y, p.z}) < 9.9) {
+                ++dark;
+                ASSERT_EQ(result.in_scattered[i].r, 0.0F) << p.x << " " << p.y << " " << p.z;
+            } else if (std::max(p.x, p.z) > 10.1) {
+                ASSERT_NEAR(result.in_scattered[i].r, 10.0F / (4.0F * 3.14159265F), 1e-4F);
+            }
+        }
+        EXPECT_GT(dark, 100U);
+    }
+}
+
 TEST_F(SunShadow, PointsAboveTheOccluderAreLit) {
     Scene scene = sunlit_scene(140.0F);
     scene.cascade_depths.assign(scene.cascade_depths.size(), 0.5F); // a floor at the camera's height, everywhere
