@@ -55,8 +55,19 @@ void Feature::State::declare_density(rg::GraphBuilder& graph) {
     pass.on_queue(wish())
         .reads(frame->parameter_buffer, Access::uniform_compute)
         .writes(density, Access::storage_compute);
+    rg::Image emitted;
+    if (frame->emission) {
+        emitted = graph.create_image("fog emission", froxel_image(settings));
+        pass.writes(emitted, Access::storage_compute);
+        frame->stages.emission = emitted;
+    }
     pass.executes([=, parameters = frame->parameter_buffer](PassContext& ctx) {
-        run(ctx, dispatch, std::array{ctx.uniform(0, parameters), ctx.storage(1, density)});
+        std::array<Binding, 3> bindings{ctx.uniform(0, parameters), ctx.storage(1, density)};
+        std::size_t count = 2;
+        if (emitted.valid()) {
+            bindings[count++] = ctx.storage(2, emitted);
+        }
+        run(ctx, dispatch, std::span(bindings).first(count));
     });
     frame->stages.density = density;
 }
@@ -237,8 +248,9 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
     const Settings& settings = frame->inputs.settings;
     const GridSettings& grid = settings.grid;
     const GroupShape group = row_group(grid.width, 32); // few columns: small groups keep all cores busy
-    const auto program = pipelines.compute(accumulation_shader(settings.storage, settings.error_estimate), group,
-                                           std::array{static_cast<std::uint32_t>(settings.integrator)});
+    const auto program =
+        pipelines.compute(accumulation_shader(settings.storage, settings.error_estimate, frame->emission), group,
+                          std::array{static_cast<std::uint32_t>(settings.integrator)});
     if (!program) {
         frame->volume.reset();
         return tl::unexpected(program.error());
@@ -252,6 +264,10 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
         .reads(frame->stages.density, Access::storage_compute)
         .reads(frame->volume->in_scattered, Access::storage_compute)
         .writes(accumulated, Access::storage_compute);
+    const rg::Image emitted = frame->stages.emission;
+    if (emitted.valid()) {
+        pass.reads(emitted, Access::storage_compute);
+    }
     rg::Image estimate;
     if (settings.error_estimate) {
         estimate = graph.create_image(
@@ -262,11 +278,14 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
     pass.executes([=, dispatch = covering(*program, group, grid.width, grid.height, 1),
                    parameters = frame->parameter_buffer, density = frame->stages.density,
                    in_scattered = frame->volume->in_scattered](PassContext& ctx) {
-        std::array<Binding, 5> bindings{ctx.uniform(0, parameters), ctx.storage(1, density),
+        std::array<Binding, 6> bindings{ctx.uniform(0, parameters), ctx.storage(1, density),
                                         ctx.storage(2, in_scattered), ctx.storage(3, accumulated, array_view)};
         std::size_t count = 4;
         if (estimate.valid()) {
             bindings[count++] = ctx.storage(4, estimate);
+        }
+        if (emitted.valid()) {
+            bindings[count++] = ctx.storage(5, emitted);
         }
         run(ctx, dispatch, std::span(bindings).first(count));
     });

@@ -94,11 +94,13 @@ rg::QueueWish Feature::State::wish() const {
 tl::expected<void, Error> Feature::State::prepare_programs() {
     const GridSettings& grid = frame->inputs.settings.grid;
     const Medium& medium = frame->inputs.medium;
-    const std::array<std::uint32_t, 5> media{medium.homogeneous.extinction_per_m > 0.0F,
-                                             medium.height.extinction_per_m > 0.0F, medium.noise.amplitude > 0.0F,
-                                             is_perspective(frame->inputs.camera), frame->parameters.frame.z > 0};
-    auto density =
-        pipelines.compute(density_injection_shader(frame->inputs.settings.storage), row_group(grid.width), media);
+    const glm::vec3 none(0.0F);
+    const std::array<std::uint32_t, 5> media{
+        medium.homogeneous.extinction_per_m > 0.0F || medium.homogeneous.emission_per_m != none,
+        medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none, medium.noise.amplitude > 0.0F,
+        is_perspective(frame->inputs.camera), frame->parameters.frame.z > 0};
+    auto density = pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission),
+                                     row_group(grid.width), media);
     if (!density) {
         return tl::unexpected(density.error());
     }
@@ -166,6 +168,7 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
     frame.camera_stands = camera_stands(inputs, state.before);
     frame.parameters = volumetric_parameters(inputs, state.before);
     frame.cluster_parameters = light_clusters(inputs.settings.grid, inputs.light_count, frame.parameters.volume.law);
+    frame.emission = emission_bound(inputs.medium) > 0.0F;
     frame.sun_shadow = shines(inputs) && inputs.sun->casts_shadows;
     if (inputs.light_count > 0) {
         const bool cluster = inputs.settings.clusters && inputs.light_count > 1;
@@ -207,6 +210,9 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     }
     if (frame.parameters.frame.z == 0) {
         state.omit("local volumes", "there is none");
+    }
+    if (!frame.emission) {
+        state.omit("fog emission", "no medium emits");
     }
     state.declare_density(graph);
     if (is_clustered(frame.lights)) {

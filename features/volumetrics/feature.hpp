@@ -67,8 +67,9 @@ struct VolumeResources {
 
 /// Intermediate images, for looking at; invalid where their pass was left out.
 struct StageResources {
-    rg::Image density; ///< 3D: scattering coefficient and extinction, 1/m times VolumetricParameters::density_scale.x
-    rg::Image esm;     ///< 2D array: ln of the mean of e^(k z), blurred
+    rg::Image density;  ///< 3D: scattering coefficient and extinction, 1/m times VolumetricParameters::density_scale.x
+    rg::Image emission; ///< 3D: radiance gained per metre, cd/m^3 times VolumetricParameters::emission_scale.x
+    rg::Image esm;      ///< 2D array: ln of the mean of e^(k z), blurred
     rg::Image
         error_estimate; ///< 2D, rgba32f, a column of froxels each: absolute error of the stored radiance at the range
 };

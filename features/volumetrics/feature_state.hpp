@@ -16,6 +16,7 @@ struct FrameState {
     bool cold = true;
     bool camera_stands = false; ///< since the frame before
     bool sun_shadow = false;
+    bool emission = false; ///< the medium emits somewhere
     LocalLights lights = LocalLights::none;
     Program density_injection;
     Program light_clustering;

@@ -48,6 +48,7 @@ void read_volume(Section& s, LocalVolume& volume) {
     s.read("extinction_per_m", volume.extinction_per_m);
     if (volume.blend != VolumeBlend::subtract) {
         s.read("albedo", volume.albedo);
+        s.read("emission_per_m", volume.emission_per_m);
     }
 }
 
@@ -58,10 +59,12 @@ void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
         subsection(section, "homogeneous", error, [&](Section& s) {
             s.read("extinction_per_m", medium.homogeneous.extinction_per_m);
             s.read("albedo", medium.homogeneous.albedo);
+            s.read("emission_per_m", medium.homogeneous.emission_per_m);
         });
         subsection(section, "height", error, [&](Section& s) {
             s.read("extinction_per_m", medium.height.extinction_per_m);
             s.read("albedo", medium.height.albedo);
+            s.read("emission_per_m", medium.height.emission_per_m);
             s.read("base_height_m", medium.height.base_height_m);
             s.read("falloff_per_m", medium.height.falloff_per_m);
         });

@@ -12,10 +12,10 @@ enum class VolumeShape : std::uint8_t { box, ellipsoid };
 
 /// What a volume does to the fog that is there before it, the volumes before it included. With w its weight:
 enum class VolumeBlend : std::uint8_t {
-    add,      ///< extinction + w e, scattering + w e albedo
-    subtract, ///< extinction - w e, at least 0; the albedo stays
-    multiply, ///< both times 1 + w (factor - 1)
-    max,      ///< its own w e and w e albedo where w e is the larger extinction
+    add,      ///< extinction + w e, scattering + w e albedo, emission + w emission_per_m
+    subtract, ///< extinction - w e, at least 0; scattering and emission fall in proportion
+    multiply, ///< all three times 1 + w (factor - 1)
+    max,      ///< its own where w e is the larger extinction
 };
 
 /// In the space where the shape reaches from -1 to 1 along each axis, at the point q, the weight is 0 outside, and
@@ -32,6 +32,7 @@ struct LocalVolume {
     float extinction_per_m = 0.0F;              ///< e, [0, 1e6]; not of multiply
     float factor = 1.0F;                        ///< of multiply, [0, 1e3]
     glm::vec3 albedo{1.0F};                     ///< each in [0, 1]; of add and max
+    glm::vec3 emission_per_m{0.0F};             ///< cd/m^3, each in [0, 1e9]; of add and max
 };
 
 } // namespace tyndall::volumetrics

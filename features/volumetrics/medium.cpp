@@ -48,8 +48,18 @@ void check_volumes(const Medium& medium, RangeCheck& check) {
         check.in_range(key + "extinction_per_m", volume.extinction_per_m, 0.0, 1e6);
         check.in_range(key + "factor", volume.factor, 0.0, 1e3);
         check.in_range(key + "albedo", volume.albedo, 0.0, 1.0);
+        check.in_range(key + "emission_per_m", volume.emission_per_m, 0.0, 1e9);
     }
     check.in_range("The extinction that medium.volumes can add up to", extinction_bound(medium), 0.0, 1e9);
+    check.in_range("The emission that medium.volumes can add up to", emission_bound(medium), 0.0, 1e12);
+}
+
+bool has_inside(const LocalVolume& volume) {
+    return volume.half_size_m.x > 0.0F && volume.half_size_m.y > 0.0F && volume.half_size_m.z > 0.0F;
+}
+
+float largest(const glm::vec3& v) {
+    return std::max({v.x, v.y, v.z});
 }
 
 } // namespace
@@ -80,7 +90,7 @@ bool is_directed(const Medium& medium) {
 float extinction_bound(const Medium& medium) {
     float bound = medium.homogeneous.extinction_per_m + medium.height.extinction_per_m;
     for (const LocalVolume& volume : medium.volumes) {
-        if (volume.half_size_m.x <= 0.0F || volume.half_size_m.y <= 0.0F || volume.half_size_m.z <= 0.0F) {
+        if (!has_inside(volume)) {
             continue;
         }
         switch (volume.blend) {
@@ -93,16 +103,61 @@ float extinction_bound(const Medium& medium) {
     return bound;
 }
 
+float emission_bound(const Medium& medium) {
+    float bound = largest(medium.homogeneous.emission_per_m) + largest(medium.height.emission_per_m);
+    for (const LocalVolume& volume : medium.volumes) {
+        if (!has_inside(volume)) {
+            continue;
+        }
+        switch (volume.blend) {
+        case VolumeBlend::add:
+        case VolumeBlend::max: bound += largest(volume.emission_per_m); break;
+        case VolumeBlend::multiply: bound *= std::max(volume.factor, 1.0F); break;
+        case VolumeBlend::subtract: break;
+        }
+    }
+    return bound;
+}
+
+double emitted_radiance_bound(const Medium& medium, double length_m) {
+    // Of a medium of emission e and extinction s, at most e times the way through it, and at most e / s: what subtracts
+    // or multiplies leaves that quotient as it is.
+    double bound = 0.0;
+    double factor = 1.0;
+    const auto add = [&](const glm::vec3& emission_per_m, float extinction_per_m, double way_m) {
+        const auto emission = static_cast<double>(largest(emission_per_m));
+        const double unweakened = emission * way_m;
+        const auto extinction = static_cast<double>(extinction_per_m);
+        bound += unweakened * extinction > emission ? emission / extinction : unweakened;
+    };
+    for (const LocalVolume& volume : medium.volumes) {
+        if (!has_inside(volume)) {
+            continue;
+        }
+        if (volume.blend == VolumeBlend::multiply) {
+            factor *= std::max(1.0, static_cast<double>(volume.factor));
+        } else if (volume.blend != VolumeBlend::subtract) {
+            const double way_m = std::min(length_m, 2.0 * static_cast<double>(glm::length(volume.half_size_m)));
+            add(volume.emission_per_m, volume.extinction_per_m, way_m);
+        }
+    }
+    add(medium.homogeneous.emission_per_m, medium.homogeneous.extinction_per_m, length_m);
+    add(medium.height.emission_per_m, 0.0F, length_m);
+    return bound * factor;
+}
+
 bool is_empty(const Medium& medium) {
-    return extinction_bound(medium) <= 0.0F;
+    return extinction_bound(medium) <= 0.0F && emission_bound(medium) <= 0.0F;
 }
 
 tl::expected<void, Error> validate(const Medium& medium) {
     RangeCheck check;
     check.in_range("medium.homogeneous.extinction_per_m", medium.homogeneous.extinction_per_m, 0.0, 1e6);
     check.in_range("medium.homogeneous.albedo", medium.homogeneous.albedo, 0.0, 1.0);
+    check.in_range("medium.homogeneous.emission_per_m", medium.homogeneous.emission_per_m, 0.0, 1e9);
     check.in_range("medium.height.extinction_per_m", medium.height.extinction_per_m, 0.0, 1e6);
     check.in_range("medium.height.albedo", medium.height.albedo, 0.0, 1.0);
+    check.in_range("medium.height.emission_per_m", medium.height.emission_per_m, 0.0, 1e9);
     check.in_range("medium.height.base_height_m", medium.height.base_height_m, -1e6, 1e6);
     check.in_range("medium.height.falloff_per_m", medium.height.falloff_per_m, 0.0, 1e3);
     check.in_range("medium.noise.amplitude", medium.noise.amplitude, 0.0, 1.0);

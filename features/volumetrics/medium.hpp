@@ -16,19 +16,22 @@ namespace tyndall::volumetrics {
 
 /// The same density everywhere.
 struct HomogeneousFog {
-    float extinction_per_m = 0.0F; ///< [0, 1e6]
-    glm::vec3 albedo{1.0F};        ///< part of the extinction that is scattered, each in [0, 1]
+    float extinction_per_m = 0.0F;  ///< [0, 1e6]
+    glm::vec3 albedo{1.0F};         ///< part of the extinction that is scattered, each in [0, 1]
+    glm::vec3 emission_per_m{0.0F}; ///< radiance gained per metre in every direction, cd/m^3, each in [0, 1e9]
 };
 
 /// Extinction at and below the base, falling off above it as e^(-falloff (y - base)), y up.
 struct HeightFog {
-    float extinction_per_m = 0.0F; ///< at the base, [0, 1e6]
-    glm::vec3 albedo{1.0F};        ///< each in [0, 1]
-    float base_height_m = 0.0F;    ///< world height, [-1e6, 1e6]
-    float falloff_per_m = 0.1F;    ///< [0, 1e3]
+    float extinction_per_m = 0.0F;  ///< at the base, [0, 1e6]
+    glm::vec3 albedo{1.0F};         ///< each in [0, 1]
+    glm::vec3 emission_per_m{0.0F}; ///< at the base, falls off as the extinction does, each in [0, 1e9]
+    float base_height_m = 0.0F;     ///< world height, [-1e6, 1e6]
+    float falloff_per_m = 0.1F;     ///< [0, 1e3]
 };
 
-/// One octave of gradient noise by which the density of all fog is multiplied: 1 + amplitude * noise, noise in [-1, 1].
+/// One octave of gradient noise by which the density of all fog, its emission too, is multiplied: 1 + amplitude *
+/// noise, noise in [-1, 1].
 struct DensityNoise {
     float amplitude = 0.0F;   ///< [0, 1]; 0: no noise
     float scale_m = 4.0F;     ///< size of a noise cell, [1e-3, 1e6]
@@ -64,7 +67,13 @@ struct Medium {
 /// No less than the extinction anywhere, noise left out, 1/m.
 [[nodiscard]] float extinction_bound(const Medium& medium);
 
-/// Neither scatters nor absorbs anywhere.
+/// No less than the emission anywhere, noise left out, cd/m^3.
+[[nodiscard]] float emission_bound(const Medium& medium);
+
+/// No less than the emitted radiance that a ray of `length_m` gathers, noise left out, cd/m^2.
+[[nodiscard]] double emitted_radiance_bound(const Medium& medium, double length_m);
+
+/// Neither scatters, absorbs nor emits anywhere.
 [[nodiscard]] bool is_empty(const Medium& medium);
 
 /// The first value outside its domain, by its key in the fog file ("phase.g must be ...").

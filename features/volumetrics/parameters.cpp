@@ -91,7 +91,8 @@ void write_phase(const Medium& medium, gpu::VolumetricParameters& u) {
 }
 
 /// The volumes that are not empty; their number.
-std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, gpu::VolumetricParameters& u) {
+std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float emission_scale,
+                            gpu::VolumetricParameters& u) {
     std::uint32_t count = 0;
     for (const LocalVolume& volume : frame.medium.volumes) {
         const glm::dvec3 half_size_m(volume.half_size_m);
@@ -109,6 +110,7 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, gpu::
         const bool multiplies = volume.blend == VolumeBlend::multiply;
         out.albedo_amount =
             glm::vec4(volume.albedo, multiplies ? volume.factor : volume.extinction_per_m * density_scale);
+        out.emission = glm::vec4(volume.emission_per_m * emission_scale, 0.0F);
         out.edge_shape_blend = glm::vec4(volume.edge > 0.0F ? 1.0F / volume.edge : 0.0F, volume.shape, volume.blend, 0);
     }
     return count;
@@ -150,6 +152,14 @@ float radiance_scale_for(const FrameInputs& frame) {
         const glm::vec3& sun = frame.sun->illuminance_lux;
         brightest += peak(phase_of(frame.medium)) * static_cast<double>(std::max({sun.x, sun.y, sun.z}));
     }
+    // The longest ray of the grid is the one along an edge of it; noise at most doubles what it gathers.
+    const gpu::ScatteringVolume volume = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
+    const glm::dvec4 slope(volume.slope);
+    const double slope_x = std::max(std::abs(slope.z), std::abs(slope.x + slope.z));
+    const double slope_y = std::max(std::abs(slope.w), std::abs(slope.y + slope.w));
+    const double longest_m = static_cast<double>(frame.settings.grid.range_m) * std::hypot(1.0, slope_x, slope_y);
+    brightest +=
+        (1.0 + static_cast<double>(frame.medium.noise.amplitude)) * emitted_radiance_bound(frame.medium, longest_m);
     const double largest = 32768.0; // half of fp16's, which leaves room for local lights
     const double smallest = 512.0;  // radiance of fog a ten-millionth as bright still has all of fp16's digits
     double scale = 1.0;
@@ -195,7 +205,8 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     const Medium& medium = frame.medium;
     const float radiance_scale = radiance_scale_for(frame);
     // The densest at a quarter of fp16's largest, since noise at most doubles it; the thinnest 1e11 times below.
-    const float density_scale = 16384.0F / std::max(extinction_bound(medium), 1e-30F);
+    const float density_scale = 16384.0F / std::max(extinction_bound(medium), 1e-20F);
+    const float emission_scale = 16384.0F / std::max(emission_bound(medium), 1e-20F);
     const glm::dmat3 render_from_view = glm::transpose(glm::dmat3(frame.camera.view_from_render));
 
     gpu::VolumetricParameters u{};
@@ -217,11 +228,14 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     }
     u.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m * density_scale);
     u.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m * density_scale);
+    u.homogeneous_emission = glm::vec4(medium.homogeneous.emission_per_m * emission_scale, 0.0F);
+    u.height_emission = glm::vec4(medium.height.emission_per_m * emission_scale, 0.0F);
     u.height_law = glm::vec4(static_cast<double>(medium.height.base_height_m) - frame.camera.origin_m.y,
                              medium.height.falloff_per_m, 0.0, 0.0);
     u.noise_origin = noise_origin(frame);
     u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, 0.0F, 0.0F, 0.0F);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
+    u.emission_scale = glm::vec4(emission_scale, density_scale / emission_scale * radiance_scale, 0.0F, 0.0F);
     write_phase(medium, u);
     u.temporal = temporal_parameters(frame, before, radiance_scale);
     const std::uint32_t frames_since_cut = before ? before->frames_since_cut + 1 : 0;
@@ -234,7 +248,8 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
         u.esm_exponents[i] = frame.settings.shadow.esm_exponent[static_cast<std::size_t>(i)];
     }
     u.depth = depth_coefficients(frame.camera.clip_from_view);
-    u.frame = glm::uvec4(frames_since_cut, frame.light_count, write_volumes(frame, density_scale, u), 0);
+    u.frame =
+        glm::uvec4(frames_since_cut, frame.light_count, write_volumes(frame, density_scale, emission_scale, u), 0);
     return u;
 }
 

@@ -2,12 +2,18 @@
 
 #include <array>
 
-#include "spirv/accumulation_fp16_e0.h"
-#include "spirv/accumulation_fp16_e1.h"
-#include "spirv/accumulation_fp32_e0.h"
-#include "spirv/accumulation_fp32_e1.h"
-#include "spirv/density_injection_fp16.h"
-#include "spirv/density_injection_fp32.h"
+#include "spirv/accumulation_fp16_e0_m0.h"
+#include "spirv/accumulation_fp16_e0_m1.h"
+#include "spirv/accumulation_fp16_e1_m0.h"
+#include "spirv/accumulation_fp16_e1_m1.h"
+#include "spirv/accumulation_fp32_e0_m0.h"
+#include "spirv/accumulation_fp32_e0_m1.h"
+#include "spirv/accumulation_fp32_e1_m0.h"
+#include "spirv/accumulation_fp32_e1_m1.h"
+#include "spirv/density_injection_fp16_m0.h"
+#include "spirv/density_injection_fp16_m1.h"
+#include "spirv/density_injection_fp32_m0.h"
+#include "spirv/density_injection_fp32_m1.h"
 #include "spirv/esm_blur.h"
 #include "spirv/esm_downsample.h"
 #include "spirv/fog_on_opaque.h"
@@ -54,13 +60,17 @@ constexpr VkDescriptorType sampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType storage_image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType storage_buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
-constexpr ShaderBinding density_bindings[] = {{0, uniform}, {1, storage_image}};
+constexpr ShaderBinding density_bindings[] = {{0, uniform}, {1, storage_image}, {2, storage_image}};
 constexpr ShaderBinding clustering_bindings[] = {
     {0, uniform}, {1, uniform}, {2, storage_buffer}, {3, storage_buffer}, {4, storage_buffer}};
 constexpr ShaderBinding downsample_bindings[] = {{0, uniform}, {1, sampled}, {2, storage_image}};
 constexpr ShaderBinding blur_bindings[] = {{0, storage_image}, {1, storage_image}};
-constexpr ShaderBinding accumulation_bindings[] = {
-    {0, uniform}, {1, storage_image}, {2, storage_image}, {3, storage_image}, {4, storage_image}};
+
+// By variant: without what it leaves out of error estimate (4) and emission (5).
+constexpr ShaderBinding accumulation_bindings[] = {{0, uniform},       {1, storage_image}, {2, storage_image},
+                                                   {3, storage_image}, {4, storage_image}, {5, storage_image}};
+constexpr ShaderBinding emitting_accumulation_bindings[] = {
+    {0, uniform}, {1, storage_image}, {2, storage_image}, {3, storage_image}, {5, storage_image}};
 constexpr ShaderBinding fog_bindings[] = {{0, uniform}, {1, sampled}, {2, sampled}};
 
 // Numbered as in froxel_lighting.comp; which of them a variant has follows from its index below.
@@ -119,10 +129,12 @@ const std::span<const std::uint32_t> lighting_code[] = {
 
 } // namespace
 
-ShaderCode density_injection_shader(StorageFormat storage) {
-    const bool fp16 = storage == StorageFormat::fp16;
-    return {"density injection", fp16 ? std::span<const std::uint32_t>(density_injection_fp16) : density_injection_fp32,
-            density_bindings};
+ShaderCode density_injection_shader(StorageFormat storage, bool emission) {
+    const std::span<const std::uint32_t> code[] = {density_injection_fp16_m0, density_injection_fp16_m1,
+                                                   density_injection_fp32_m0, density_injection_fp32_m1};
+    const std::size_t format = storage == StorageFormat::fp16 ? 0 : 2;
+    return {"density injection", code[format + (emission ? 1 : 0)],
+            std::span(density_bindings).first(emission ? 3 : 2)};
 }
 
 ShaderCode light_clustering_shader() {
@@ -147,12 +159,16 @@ ShaderCode froxel_lighting_shader(const LightingVariant& variant) {
             variant.history ? 4U : 0U};
 }
 
-ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate) {
-    const bool fp16 = storage == StorageFormat::fp16;
-    const std::span<const std::uint32_t> code[] = {accumulation_fp32_e0, accumulation_fp32_e1, accumulation_fp16_e0,
-                                                   accumulation_fp16_e1};
-    return {"accumulation", code[(fp16 ? 2 : 0) + (error_estimate ? 1 : 0)],
-            std::span(accumulation_bindings).first(error_estimate ? 5 : 4)};
+ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate, bool emission) {
+    const std::span<const std::uint32_t> code[] = {
+        accumulation_fp16_e0_m0, accumulation_fp16_e0_m1, accumulation_fp16_e1_m0, accumulation_fp16_e1_m1,
+        accumulation_fp32_e0_m0, accumulation_fp32_e0_m1, accumulation_fp32_e1_m0, accumulation_fp32_e1_m1};
+    const std::size_t format = storage == StorageFormat::fp16 ? 0 : 4;
+    const std::size_t index = format + (error_estimate ? 2 : 0) + (emission ? 1 : 0);
+    if (emission && !error_estimate) {
+        return {"accumulation", code[index], emitting_accumulation_bindings};
+    }
+    return {"accumulation", code[index], std::span(accumulation_bindings).first(emission ? 6 : error_estimate ? 5 : 4)};
 }
 
 ShaderCode full_screen_shader() {

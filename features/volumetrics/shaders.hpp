@@ -33,13 +33,13 @@ struct LightingVariant {
     bool history = false;
 };
 
-[[nodiscard]] ShaderCode density_injection_shader(StorageFormat storage);
+[[nodiscard]] ShaderCode density_injection_shader(StorageFormat storage, bool emission);
 [[nodiscard]] ShaderCode light_clustering_shader();
 [[nodiscard]] ShaderCode esm_downsample_shader();
 [[nodiscard]] ShaderCode esm_blur_shader();
 /// Bindings that a variant lacks are left out of the list.
 [[nodiscard]] ShaderCode froxel_lighting_shader(const LightingVariant& variant);
-[[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate);
+[[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate, bool emission);
 [[nodiscard]] ShaderCode full_screen_shader();
 [[nodiscard]] ShaderCode fog_on_opaque_shader();
 

@@ -5,6 +5,8 @@
 // tau += x. The default, w = phi1, is exact for a constant medium, divides by no sigma and is a convex combination, so
 // bounded by the brightest source whatever x. The others are in integrators.glsl.
 //
+// EMISSION 1: the medium emits, too. L is then no more than the smaller of the brightest j / sigma_t and the sum of j dt.
+//
 // ESTIMATE 1: what another scheme makes of the same samples is summed beside, and the difference at the last boundary
 // stored: against exponential_quadratic, and of that itself against exponential.
 #version 460
@@ -22,6 +24,9 @@ layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform readonly restrict image3D density;
 layout(set = 0, binding = 2, VOLUME_FORMAT) uniform readonly restrict image3D in_scattered;
 layout(set = 0, binding = 3, VOLUME_FORMAT) uniform writeonly restrict image2DArray accumulated;
+#if EMISSION
+layout(set = 0, binding = 5, VOLUME_FORMAT) uniform readonly restrict image3D emitted;
+#endif
 #if ESTIMATE
 layout(set = 0, binding = 4, rgba32f) uniform writeonly restrict image2D error_estimate;
 const bool needs_parabola = true;
@@ -32,6 +37,15 @@ const uint companion = integrator == exponential_quadratic ? exponential : expon
 
 float density_of(ivec2 column, int k) { return imageLoad(density, ivec3(column, k)).a; }
 
+// Radiance gained per metre in slice k of this scattering coefficient, times density_scale.
+vec3 source_of(ivec2 column, int k, vec3 scattering) {
+    vec3 source = scattering * imageLoad(in_scattered, ivec3(column, k)).rgb;
+#if EMISSION
+    source += imageLoad(emitted, ivec3(column, k)).rgb * u.emission_scale.y;
+#endif
+    return source;
+}
+
 // Slice k of length dt; at the column's ends the density goes on as it begins.
 SliceNode slice_node(ivec2 column, int k, float dt) {
     int last = int(u.volume.grid.z) - 1;
@@ -39,7 +53,7 @@ SliceNode slice_node(ivec2 column, int k, float dt) {
     float before = k > 0 ? density_of(column, k - 1) : 2.0 * medium.a - density_of(column, 1);
     float after = k < last ? density_of(column, k + 1) : 2.0 * medium.a - density_of(column, last - 1);
     SliceNode node;
-    node.source = medium.rgb * imageLoad(in_scattered, ivec3(column, k)).rgb;
+    node.source = source_of(column, k, medium.rgb);
     node.extinction = medium.a;
     node.x = medium.a * dt;
     node.middle = optical_depth_of_middle(before, medium.a, after, u.volume.slice.z, dt);
@@ -104,7 +118,7 @@ void main() {
             here = after;
         } else {
             vec4 medium = imageLoad(density, ivec3(column, k));
-            source = medium.rgb * imageLoad(in_scattered, ivec3(column, k)).rgb;
+            source = source_of(column, k, medium.rgb);
             x = medium.a * dt;
             attenuation = attenuation_of(x);
         }

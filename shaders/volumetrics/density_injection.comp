@@ -1,5 +1,6 @@
 // Media -> scattering coefficient (rgb) and extinction (a) of each froxel, times density_scale so that fp16 holds thin
-// and dense media alike. One pass, specialised to the media that are there.
+// and dense media alike. One pass, specialised to the media that are there. EMISSION 1: and the radiance gained per
+// metre (rgb), times emission_scale.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -18,6 +19,9 @@ layout(constant_id = 7) const bool has_volumes = false;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D density;
+#if EMISSION
+layout(set = 0, binding = 2, VOLUME_FORMAT) uniform writeonly restrict image3D emitted;
+#endif
 
 // Mean over the slice of e^(-falloff max(0, y - base)) along a ray between heights a and b above the base: exact, so
 // that the optical depth at slice boundaries is too. One part of the ray may lie below the base.
@@ -52,24 +56,32 @@ void main() {
     float far_m = near_m + slice_depth(u.volume, near_m);
 
     vec4 medium = vec4(0.0);
+    vec3 emission = vec3(0.0);
     if (has_homogeneous) {
         medium += vec4(u.homogeneous.rgb, 1.0) * u.homogeneous.w;
+        emission += u.homogeneous_emission.rgb;
     }
     if (has_height) {
         float eye_height = eye.y - u.height_law.x;
         float mean = mean_height_density(eye_height + ray.y * near_m, eye_height + ray.y * far_m, u.height_law.y);
         medium += vec4(u.height.rgb, 1.0) * (u.height.w * mean);
+        emission += u.height_emission.rgb * mean;
     }
     if (has_volumes) {
         for (uint i = 0u; i < u.frame.z; ++i) {
-            medium = blend_local_volume(u.volumes[i], medium, eye + ray * near_m, eye + ray * far_m);
+            blend_local_volume(u.volumes[i], eye + ray * near_m, eye + ray * far_m, medium, emission);
         }
     }
     if (has_noise) {
         float middle_m = 0.5 * (near_m + far_m);
         vec2 cell = (u.volume.slope.xy * middle_m + u.volume.origin.xy) / (grid.xy - 1.0);
         float froxel_m = max(max(abs(cell.x), abs(cell.y)), (far_m - near_m) * length(ray));
-        medium *= noise_factor(eye + ray * middle_m, froxel_m);
+        float factor = noise_factor(eye + ray * middle_m, froxel_m);
+        medium *= factor;
+        emission *= factor;
     }
     imageStore(density, froxel, storable(medium));
+#if EMISSION
+    imageStore(emitted, froxel, storable(vec4(emission, 0.0)));
+#endif
 }

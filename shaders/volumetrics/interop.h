@@ -16,6 +16,7 @@ struct GpuLocalVolume {
     vec4 row_y;
     vec4 row_z;
     vec4 albedo_amount;    // rgb; w: extinction, 1/m, times density_scale, or the factor of multiply
+    vec4 emission;         // rgb, times emission_scale.x; a 0
     vec4 edge_shape_blend; // x: 1 / edge, 0 where it is hard; y: VolumeShape; z: VolumeBlend; w 0
 };
 
@@ -33,10 +34,14 @@ struct VolumetricParameters {
     mat4 previous_view_from_view; // where a point of this frame's view space was in the frame before's
     vec4 homogeneous;     // rgb albedo; w: extinction, 1/m, times density_scale
     vec4 height;          // rgb albedo; w: extinction at and below the base, 1/m, times density_scale
+    vec4 homogeneous_emission; // rgb, cd/m^3, times emission_scale.x; a 0
+    vec4 height_emission;      // the same at and below the base
     vec4 height_law;      // x: base height above the camera, m; y: falloff, 1/m; zw 0
     vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude, 0 to 1
     vec4 noise_cells;     // x: cells per metre; yzw 0
     vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0
+    vec4 emission_scale;  // x: stored emission is the true one (cd/m^3) times x; y: stored emission times y has the unit of
+                          // a stored coefficient times stored radiance; zw 0
     vec4 phase;           // x: bound of the change of its logarithm, 1/rad; yzw 0
     vec4 phase_asymmetry; // g or k of each lobe
     vec4 phase_weight;    // of each lobe, of sum 1

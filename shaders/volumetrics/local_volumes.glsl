@@ -49,15 +49,15 @@ float edge_weight(GpuLocalVolume volume, vec3 q) {
     return weight.x * weight.y * weight.z;
 }
 
-// `medium` (scattering rgb, extinction a; means over the slice from `near` to `far`) with the volume blended in. Inside
-// the overlap the weight is its mean there, of soft edges by Gauss-Legendre with three nodes.
-vec4 blend_local_volume(GpuLocalVolume volume, vec4 medium, vec3 near, vec3 far) {
+// Blends the volume into `medium` (scattering rgb, extinction a) and `emission`, means over the slice from `near` to
+// `far`. Inside the overlap the weight is its mean there, of soft edges by Gauss-Legendre with three nodes.
+void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 medium, inout vec3 emission) {
     vec3 a = shape_space(volume, near);
     vec3 d = shape_space(volume, far) - a;
     vec2 overlap = volume.edge_shape_blend.y == shape_ellipsoid ? overlap_with_ellipsoid(a, d) : overlap_with_box(a, d);
     float part = overlap.y - overlap.x;
     if (part <= 0.0) {
-        return medium;
+        return;
     }
     float weight = 1.0;
     if (volume.edge_shape_blend.x > 0.0) {
@@ -69,15 +69,18 @@ vec4 blend_local_volume(GpuLocalVolume volume, vec4 medium, vec3 near, vec3 far)
     float amount = weight * volume.albedo_amount.w;
     vec4 own = vec4(volume.albedo_amount.rgb, 1.0) * amount;
     float blend = volume.edge_shape_blend.z;
-    vec4 inside = medium + own;
+    vec3 own_emission = volume.emission.rgb * weight;
+    float keep = 1.0;
     if (blend == blend_subtract) {
-        inside = medium * max(1.0 - amount / max(medium.a, 1e-30), 0.0);
+        keep = max(1.0 - amount / max(medium.a, 1e-30), 0.0);
     } else if (blend == blend_multiply) {
-        inside = medium * (1.0 + weight * (volume.albedo_amount.w - 1.0));
+        keep = 1.0 + weight * (volume.albedo_amount.w - 1.0);
     } else if (blend == blend_max) {
-        inside = own.a > medium.a ? own : medium;
+        keep = own.a > medium.a ? 0.0 : 1.0;
     }
-    return mix(medium, inside, part);
+    bool adds = blend != blend_subtract && blend != blend_multiply && (blend != blend_max || keep == 0.0);
+    medium = mix(medium, medium * keep + (adds ? own : vec4(0.0)), part);
+    emission = mix(emission, emission * keep + (adds ? own_emission : vec3(0.0)), part);
 }
 
 #endif

@@ -27,8 +27,9 @@ TEST(FogJson, EmptyObjectGivesDocumentedDefaults) {
 TEST(FogJson, ReadsEveryKey) {
     const auto fog = parse_fog_json(R"({
         "medium": {
-            "homogeneous": {"extinction_per_m": 0.02, "albedo": [0.9, 0.8, 0.7]},
-            "height": {"extinction_per_m": 0.05, "albedo": [0.6, 0.5, 0.4], "base_height_m": -3, "falloff_per_m": 0.3},
+            "homogeneous": {"extinction_per_m": 0.02, "albedo": [0.9, 0.8, 0.7], "emission_per_m": [3, 2, 1]},
+            "height": {"extinction_per_m": 0.05, "albedo": [0.6, 0.5, 0.4], "base_height_m": -3, "falloff_per_m": 0.3,
+                       "emission_per_m": [0, 4, 5]},
             "noise": {"amplitude": 0.6, "scale_m": 3, "wind_m_s": [0.5, 0, -0.25]}},
         "phase": {"g": -0.4},
         "ambient": {"radiance": [1, 2, 3]},
@@ -41,6 +42,8 @@ TEST(FogJson, ReadsEveryKey) {
     const Medium& m = fog->medium;
     EXPECT_EQ(m.homogeneous.extinction_per_m, 0.02F);
     EXPECT_EQ(m.homogeneous.albedo, glm::vec3(0.9F, 0.8F, 0.7F));
+    EXPECT_EQ(m.homogeneous.emission_per_m, glm::vec3(3, 2, 1));
+    EXPECT_EQ(m.height.emission_per_m, glm::vec3(0, 4, 5));
     EXPECT_EQ(m.height.extinction_per_m, 0.05F);
     EXPECT_EQ(m.height.albedo, glm::vec3(0.6F, 0.5F, 0.4F));
     EXPECT_EQ(m.height.base_height_m, -3.0F);
@@ -102,6 +105,11 @@ TEST(FogJson, WrongTypesAreNamedByPath) {
 TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"medium": {"homogeneous": {"extinction_per_m": -1}}})"),
               "medium.homogeneous.extinction_per_m must be between 0 and 1e+06, not -1.");
+    EXPECT_EQ(refusal(R"({"medium": {"homogeneous": {"emission_per_m": [0, -1, 0]}}})"),
+              "medium.homogeneous.emission_per_m[1] must be between 0 and 1e+09, not -1.");
+    EXPECT_EQ(refusal(R"({"medium": {"volumes": [{"emission_per_m": [0, 0, 2e9]}]}})"),
+              "medium.volumes[0].emission_per_m[2] must be between 0 and 1e+09, not 2e+09.");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 2}})"), "phase.g must be between -0.999 and 0.999, not 2.");
     EXPECT_EQ(refusal(R"({"medium": {"height": {"albedo": [1, 1, 2]}}})"),
               "medium.height.albedo[2] must be between 0 and 1, not 2.");
     EXPECT_EQ(refusal(R"({"medium": {"noise": {"amplitude": 1.5}}})"),

@@ -43,11 +43,13 @@ TEST_F(AgainstReference, NoiseIsTheOneThatIsDefined) {
     EXPECT_LE(worst, 1e-4);
 }
 
-/// Height fog, a sun and a spot light beside the view, before a black wall at 20 m.
+/// Shining height fog, a sun and a spot light beside the view, before a black wall at 20 m.
 TEST_F(AgainstReference, LightsInHeightFog) {
     Scene scene = plain_scene();
     scene.inputs.medium.homogeneous.extinction_per_m = 0.02F;
     scene.inputs.medium.height = {.extinction_per_m = 0.2F, .base_height_m = -1.0F, .falloff_per_m = 0.4F};
+    scene.inputs.medium.homogeneous.emission_per_m = {0.001F, 0.002F, 0.003F};
+    scene.inputs.medium.height.emission_per_m = {0.03F, 0.02F, 0.01F};
     scene.inputs.medium.phase_g = 0.5F;
     scene.inputs.medium.ambient_radiance = {0.02F, 0.03F, 0.04F};
     scene.inputs.sun = Sun{glm::normalize(glm::vec3(0.3F, -1.0F, 0.4F)), glm::vec3(2.0F), false};

@@ -66,6 +66,28 @@ TEST(Quadrature, IsExactForPolynomialsAndBoundsItsError) {
     }
 }
 
+/// Against the closed form in homogeneous fog and a sum in height fog; with noise, emission stays a multiple of
+/// extinction, so that what is seen is that multiple of what is hidden.
+TEST(Reference, Emission) {
+    const Ray ray{{0.0, 1.0, 0.0}, glm::normalize(glm::dvec3(1.0, 0.2, -2.0))};
+    Scene scene;
+    scene.medium.homogeneous.emission_per_m = glm::vec3(3.0F);
+    EXPECT_NEAR(airlight(scene, ray, 7.0, fine).value.x, 21.0, 1e-8);
+    scene.medium.homogeneous.extinction_per_m = 0.25F;
+    EXPECT_NEAR(airlight(scene, ray, 7.0, fine).value.x, 12.0 * -std::expm1(-1.75), 1e-8);
+    EXPECT_NEAR(airlight(scene, ray, infinity, fine).value.x, 12.0, 1e-8);
+    scene.medium.noise = {.amplitude = 0.8F, .scale_m = 1.5F};
+    const double hidden = 1.0 - transmittance(scene, ray, 7.0, {1e-7, 0.0}).value.x;
+    EXPECT_NEAR(airlight(scene, ray, 7.0, {1e-7, 0.0}).value.x, 12.0 * hidden, 1e-5);
+
+    scene.medium = {};
+    scene.medium.height = {.emission_per_m = glm::vec3(2.0F), .base_height_m = 2.0F, .falloff_per_m = 0.5F};
+    const double expected = midpoints(0.0, 60.0, 200000, [&](double t) {
+        return 2.0 * std::exp(-0.5 * std::fmax(0.0, 1.0 + ray.direction.y * t - 2.0));
+    });
+    EXPECT_NEAR(airlight(scene, ray, 60.0, fine).value.x, expected, 1e-6 * expected);
+}
+
 TEST(Reference, Slab) {
     for (const float extinction : {1e-8F, 1e-3F, 0.3F, 10.0F, 1e6F}) {
         Scene scene = homogeneous(extinction);

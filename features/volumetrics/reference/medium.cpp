@@ -89,24 +89,32 @@ double Fog::noise_factor(const glm::dvec3& point) const {
     return 1.0 + static_cast<double>(noise.amplitude) * gradient_noise(cells);
 }
 
-double Fog::height_density(const glm::dvec3& point) const {
-    const HeightFog& height = medium_->height;
-    const double above_m = std::fmax(0.0, point.y - static_cast<double>(height.base_height_m));
-    return static_cast<double>(height.extinction_per_m) *
-           std::exp(-static_cast<double>(height.falloff_per_m) * above_m);
+double Fog::height_profile(const glm::dvec3& point) const {
+    const double above_m = std::fmax(0.0, point.y - static_cast<double>(medium_->height.base_height_m));
+    return std::exp(-static_cast<double>(medium_->height.falloff_per_m) * above_m);
 }
 
 Coefficients Fog::at(const glm::dvec3& point) const {
     const double factor = noise_factor(point);
-    const double homogeneous = factor * static_cast<double>(medium_->homogeneous.extinction_per_m);
-    const double height = factor * height_density(point);
-    return {homogeneous * glm::dvec3(medium_->homogeneous.albedo) + height * glm::dvec3(medium_->height.albedo),
-            glm::dvec3(homogeneous + height)};
+    const HomogeneousFog& homogeneous = medium_->homogeneous;
+    const HeightFog& height = medium_->height;
+    const double here = height_profile(point);
+    const double even = static_cast<double>(homogeneous.extinction_per_m);
+    const double low = here * static_cast<double>(height.extinction_per_m);
+    return {factor * (even * glm::dvec3(homogeneous.albedo) + low * glm::dvec3(height.albedo)),
+            glm::dvec3(factor * (even + low)),
+            factor * (glm::dvec3(homogeneous.emission_per_m) + here * glm::dvec3(height.emission_per_m))};
+}
+
+bool Fog::emits() const {
+    const glm::vec3 none(0.0F);
+    return medium_->homogeneous.emission_per_m != none || medium_->height.emission_per_m != none;
 }
 
 Coefficients Fog::ending_at(const glm::dvec3& point) const {
-    const double height = noise_factor(point) * height_density(point);
-    return {height * glm::dvec3(medium_->height.albedo), glm::dvec3(height)};
+    const double height =
+        noise_factor(point) * height_profile(point) * static_cast<double>(medium_->height.extinction_per_m);
+    return {.scattering = height * glm::dvec3(medium_->height.albedo), .extinction = glm::dvec3(height)};
 }
 
 glm::dvec3 Fog::closed_optical_depth(const Ray& ray, double length_m) const {
@@ -151,13 +159,23 @@ double Fog::top_of_height_fog(const Ray& ray) const {
     return std::fmax(0.0, (top_m - ray.origin.y) / ray.direction.y);
 }
 
+double Fog::end_along(const Ray& ray) const {
+    const glm::vec3 none(0.0F);
+    const Medium& medium = *medium_;
+    if (medium.homogeneous.extinction_per_m > 0.0F || medium.homogeneous.emission_per_m != none) {
+        return infinity;
+    }
+    const bool is_high = medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none;
+    return is_high ? top_of_height_fog(ray) : 0.0;
+}
+
 void Fog::add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks) const {
     const auto add = [&](double distance_m) {
         if (distance_m > part.begin && distance_m < part.end) {
             breaks.push_back(distance_m);
         }
     };
-    if (medium_->height.extinction_per_m > 0.0F && ray.direction.y != 0.0) {
+    if ((medium_->height.extinction_per_m > 0.0F || emits()) && ray.direction.y != 0.0) {
         for (const double depths : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, nothing_left}) {
             const double height_m = static_cast<double>(medium_->height.base_height_m) +
                                     depths / static_cast<double>(medium_->height.falloff_per_m);

@@ -32,6 +32,7 @@ namespace tyndall::volumetrics::reference {
 struct Coefficients {
     glm::dvec3 scattering{0.0};
     glm::dvec3 extinction{0.0};
+    glm::dvec3 emission{0.0}; ///< radiance gained
 };
 
 /// The medium at one time.
@@ -41,6 +42,8 @@ public:
 
     [[nodiscard]] const Medium& medium() const { return *medium_; }
     [[nodiscard]] Coefficients at(const glm::dvec3& point) const;
+
+    [[nodiscard]] bool emits() const;
 
     /// Whether `closed_optical_depth` is the optical depth; else it is its mean over all noises.
     [[nodiscard]] bool is_closed() const { return medium_->noise.amplitude == 0.0F; }
@@ -58,6 +61,9 @@ public:
     /// homogeneous fog nothing is left beyond.
     [[nodiscard]] double top_of_height_fog(const Ray& ray) const;
 
+    /// How far along the ray something is left of the medium: 0 of none.
+    [[nodiscard]] double end_along(const Ray& ray) const;
+
     /// Appends the distances within `part` between which the mean density is smooth and changes by no more than a few
     /// orders of magnitude. Not sorted.
     void add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks) const;
@@ -66,7 +72,7 @@ public:
 
 private:
     [[nodiscard]] double noise_factor(const glm::dvec3& point) const;
-    [[nodiscard]] double height_density(const glm::dvec3& point) const;
+    [[nodiscard]] double height_profile(const glm::dvec3& point) const; ///< 1 at the base
 
     const Medium* medium_;
     double time_s_;

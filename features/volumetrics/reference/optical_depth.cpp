@@ -106,9 +106,7 @@ Estimate optical_depth_of_sky(const Fog& fog, const Ray& ray, double wanted) {
 
 EyePath::EyePath(const Fog& fog, const Ray& ray, double length_m, double wanted) : fog_(fog), ray_(ray) {
     double limit_m = length_m;
-    if (fog.medium().homogeneous.extinction_per_m == 0.0F) {
-        limit_m = fog.medium().height.extinction_per_m == 0.0F ? 0.0 : std::min(limit_m, fog.top_of_height_fog(ray));
-    }
+    limit_m = std::min(limit_m, fog.end_along(ray));
     // Noise may keep the density below its mean for a while: then farther.
     double begin_m = 0.0;
     for (double depth = nothing_left; limit_m > begin_m && depth < 1e6; depth *= 2.0) {

@@ -54,6 +54,7 @@ public:
 
 private:
     void add_sources() {
+        add_emission();
         add_ambient();
         if (scene_.sun) {
             add_sun(*scene_.sun);
@@ -93,6 +94,15 @@ private:
             estimate.error += 1.7 * inner(tolerance_) * (estimate.value + scale_);
         }
         sum_ += estimate;
+    }
+
+    void add_emission() {
+        const auto integrand = [&](double t) {
+            return fog_.at(point_at(ray_, t)).emission * glm::exp(-path_.optical_depth(t));
+        };
+        if (fog_.emits()) {
+            sum_ += integral({Interval{0.0, path_.end()}}, {}, std::identity(), integrand);
+        }
     }
 
     void add_ambient() {

@@ -20,7 +20,7 @@ struct SurfacePoint {
 };
 
 /// Radiance scattered and emitted toward the ray's origin by the medium on the way to `length_m`, which may be
-/// infinite. No surface may stand on that way.
+/// infinite, unless homogeneous fog shines there without extinction. No surface may stand on that way.
 [[nodiscard]] Estimate airlight(const Scene& scene, const Ray& ray, double length_m, const Tolerance& tolerance);
 
 /// Part of the light that passes that way.
