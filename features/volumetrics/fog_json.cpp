@@ -48,9 +48,37 @@ private:
     std::optional<Error> error_;
 };
 
+/// JSON has no word for what is no finite number, though many programs write one. As strings, they are met where the
+/// key and its range are known.
+std::string quote_words_for_no_number(std::string_view text) {
+    std::string quoted;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t length = 1;
+        bool is_word = false;
+        for (const std::string_view word : not_finite_words) {
+            if (!in_string && text.substr(i, word.size()) == word) {
+                length = word.size();
+                is_word = true;
+                break;
+            }
+        }
+        if (in_string && text[i] == '\\') {
+            length = 2;
+        } else if (text[i] == '"') {
+            in_string = !in_string;
+        }
+        const std::string piece(text.substr(i, length));
+        quoted += is_word ? '"' + piece + '"' : piece;
+        i += length;
+    }
+    return quoted;
+}
+
 } // namespace
 
-tl::expected<Fog, Error> parse_fog_json(std::string_view text) {
+tl::expected<Fog, Error> parse_fog_json(std::string_view given) {
+    const std::string text = quote_words_for_no_number(given);
     SyntaxCheck syntax;
     if (!Json::sax_parse(text.begin(), text.end(), &syntax)) {
         return tl::unexpected(syntax.error().value_or(Error{"The fog file is not valid JSON."}));

@@ -23,6 +23,9 @@ namespace tyndall::volumetrics {
 
 using Json = nlohmann::json;
 
+/// How programs write in JSON what is no finite number.
+inline constexpr std::array<std::string_view, 3> not_finite_words{"NaN", "-Infinity", "Infinity"};
+
 /// Reads known keys of one object; what is left over at the end is unknown. Keeps the first complaint of all sections.
 class Section {
 public:
@@ -173,6 +176,14 @@ private:
         }
     }
     float number(const Json& json, const std::string& path, float fallback) {
+        const auto* word = json.get_ptr<const Json::string_t*>();
+        for (const std::string_view not_finite : not_finite_words) {
+            if (word != nullptr && *word == not_finite) { // outside every range, so that `validate` names it
+                return not_finite == "NaN"         ? std::numeric_limits<float>::quiet_NaN()
+                       : not_finite == "-Infinity" ? -std::numeric_limits<float>::infinity()
+                                                   : std::numeric_limits<float>::infinity();
+            }
+        }
         if (!json.is_number()) {
             complain(path, "must be a number");
             return fallback;

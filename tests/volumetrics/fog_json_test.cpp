@@ -212,7 +212,16 @@ TEST(FogJson, ImpossiblePhasesAndAmbientsNameKeyAndRange) {
 TEST(FogJson, NumbersThatSinglePrecisionLacksAreRefused) {
     EXPECT_EQ(refusal(R"({"phase": {"g": 1e60}})"), "phase.g must be a finite number of single precision.");
     EXPECT_EQ(refusal(R"({"phase": {"g": 1e999}})").substr(0, 30), "The fog file is not valid JSON");
-    EXPECT_EQ(refusal(R"({"phase": {"g": NaN}})"), "The fog file is not valid JSON near byte 17.");
+}
+
+TEST(FogJson, WhatIsNoFiniteNumberIsRefusedWithKeyAndRange) {
+    EXPECT_EQ(refusal(R"({"phase": {"g": NaN}})"), "phase.g must be between -0.999 and 0.999, not nan.");
+    EXPECT_EQ(refusal(R"({"medium": {"homogeneous": {"extinction_per_m": Infinity}}})"),
+              "medium.homogeneous.extinction_per_m must be between 0 and 1e+06, not inf.");
+    EXPECT_EQ(refusal(R"({"medium": {"noise": {"wind_m_s": [0, -Infinity, 0]}}})"),
+              "medium.noise.wind_m_s[1] must be between -1000 and 1000, not -inf.");
+    EXPECT_EQ(refusal(R"({"grid": {"width": NaN}})"), "grid.width must be a whole number that is not negative.");
+    EXPECT_EQ(refusal(R"({"\"NaN": 1})"), "\"NaN is not a key of the fog file.");
 }
 
 TEST(FogJson, BrokenTextSaysWhere) {
