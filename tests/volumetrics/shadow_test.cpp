@@ -171,19 +171,42 @@ TEST_F(SunShadow, IsTheBilinearMeanOfTheFourTexelsAround) {
     }
 }
 
-TEST_F(SunShadow, LitFractionIsThatOfTheSliceWhereverItsSampleLies) {
-    // Stripes across the view: how much of a slice they light does not depend on x and y.
+/// Stripes across the view: how much of a slice they light does not depend on x and y.
+Scene striped_scene(std::uint32_t width, std::uint32_t height) {
     Scene scene = sunlit_scene(140.0F);
-    scene.inputs.settings.grid = {.width = 16, .height = 9, .slices = 16, .range_m = 64.0F, .shape_m = 16.0F};
+    scene.inputs.settings.grid = {.width = width, .height = height, .slices = 16, .range_m = 64.0F, .shape_m = 16.0F};
     scene.inputs.settings.visibility.method = SunVisibility::lit_fraction;
     for (std::size_t i = 0; i < scene.cascade_depths.size(); ++i) {
         scene.cascade_depths[i] = i / scene.cascade_size % scene.cascade_size % 3 == 0 ? 0.0F : 1.0F;
     }
+    return scene;
+}
+
+TEST_F(SunShadow, LitFractionIsThatOfTheSliceWhereverItsSampleLies) {
+    Scene scene = striped_scene(16, 9);
     const Result at_centres = render(scene);
     scene.inputs.settings.temporal.jitter = true;
     const Result jittered = render(scene);
     for (std::size_t i = 0; i < jittered.in_scattered.size(); ++i) {
         ASSERT_NEAR(jittered.in_scattered[i].r, at_centres.in_scattered[i].r, 1e-3F) << i;
+    }
+}
+
+TEST_F(SunShadow, SamplesLieEvenlyOverTheirSlices) {
+    Scene scene = striped_scene(64, 36);
+    const Result exact = render(scene);
+    scene.inputs.settings.visibility.method = SunVisibility::one_tap;
+    scene.inputs.settings.temporal.jitter = true;
+    const Result sampled = render(scene);
+    constexpr std::size_t columns = 64 * 36;
+    for (std::size_t slice = 0; slice < 16; ++slice) {
+        double mean = 0.0;
+        for (std::size_t i = slice * columns; i < (slice + 1) * columns; ++i) {
+            mean += static_cast<double>(sampled.in_scattered[i].r) / columns;
+        }
+        // Five times the standard error of as many random samples, of which each is lit or not.
+        EXPECT_NEAR(mean, static_cast<double>(exact.in_scattered[slice * columns].r), 0.05 * 10.0 / (4.0 * 3.14159265))
+            << slice;
     }
 }
 
