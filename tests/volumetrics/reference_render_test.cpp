@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "features/volumetrics/reference/medium.hpp"
@@ -86,6 +87,65 @@ TEST(Reference, Emission) {
         return 2.0 * std::exp(-0.5 * std::fmax(0.0, 1.0 + ray.direction.y * t - 2.0));
     });
     EXPECT_NEAR(airlight(scene, ray, 60.0, fine).value.x, expected, 1e-6 * expected);
+}
+
+/// Against what a plain sum makes of volumes upon height fog, of which the sums of a box and a sphere are known.
+TEST(Reference, LocalVolumes) {
+    const Ray ray{{0.0, 1.0, 0.0}, {0.0, 0.0, -1.0}};
+    Scene scene;
+    scene.medium.volumes = {LocalVolume{.center_m = {0.0F, 1.0F, -10.0F},
+                                        .half_size_m = {1.0F, 2.0F, 3.0F},
+                                        .extinction_per_m = 0.25F,
+                                        .emission_per_m = glm::vec3(0.5F)}};
+    EXPECT_NEAR(transmittance(scene, ray, 20.0, fine).value.x, std::exp(-1.5), 1e-9);
+    EXPECT_NEAR(transmittance(scene, ray, infinity, fine).value.x, std::exp(-1.5), 1e-9);
+    EXPECT_NEAR(transmittance(scene, ray, 9.0, fine).value.x, std::exp(-0.5), 1e-9);
+    EXPECT_NEAR(airlight(scene, ray, 20.0, fine).value.x, 2.0 * -std::expm1(-1.5), 1e-8);
+    LocalVolume& volume = scene.medium.volumes[0];
+    volume.shape = VolumeShape::ellipsoid;
+    volume.center_m.x = 0.6F; // 0.8 of the half size is left
+    EXPECT_NEAR(transmittance(scene, ray, 20.0, fine).value.x, std::exp(-1.2), 1e-7);
+    volume.edge = 1.0F; // the mean of 1 - |q| from -0.8 to 0.8 beside the centre by 0.6
+    const double soft = 3.0 * midpoints(-0.8, 0.8, 400000, [](double q) { return 1.0 - std::hypot(0.6, q); });
+    EXPECT_NEAR(transmittance(scene, ray, 20.0, fine).value.x, std::exp(-0.25 * soft), 1e-7);
+
+    const glm::dvec3 centre{0.0, 1.0, -10.0};
+    scene.medium.homogeneous = {.extinction_per_m = 0.1F, .albedo = glm::vec3(0.5F), .emission_per_m = glm::vec3(2.0F)};
+    const auto at_centre = [&](VolumeBlend blend, float extinction_per_m) {
+        scene.medium.volumes = {LocalVolume{.blend = blend,
+                                            .center_m = {0.0F, 1.0F, -10.0F},
+                                            .extinction_per_m = extinction_per_m,
+                                            .factor = 3.0F,
+                                            .albedo = glm::vec3(0.25F),
+                                            .emission_per_m = glm::vec3(5.0F)}};
+        const Coefficients c = Fog(scene.medium, 0.0).at(centre);
+        return glm::dvec3(c.scattering.x, c.extinction.x, c.emission.x);
+    };
+    const auto expect = [](const glm::dvec3& found, const glm::dvec3& expected) {
+        EXPECT_LE(glm::length(found - expected), 1e-6) << found.x << " " << found.y << " " << found.z;
+    };
+    expect(at_centre(VolumeBlend::add, 0.4F), {0.15, 0.5, 7.0});
+    expect(at_centre(VolumeBlend::subtract, 0.04F), {0.03, 0.06, 1.2});
+    expect(at_centre(VolumeBlend::subtract, 0.4F), {0.0, 0.0, 0.0});
+    expect(at_centre(VolumeBlend::multiply, 0.0F), {0.15, 0.3, 6.0});
+    expect(at_centre(VolumeBlend::max, 0.4F), {0.1, 0.4, 5.0});
+    expect(at_centre(VolumeBlend::max, 0.04F), {0.05, 0.1, 2.0});
+}
+
+/// The way of the sun's light through a volume counts, that through fog without end does not.
+TEST(Reference, SunThroughALocalVolume) {
+    Medium medium;
+    medium.homogeneous.extinction_per_m = 0.1F;
+    medium.volumes = {LocalVolume{.center_m = {0.0F, 10.0F, 0.0F},
+                                  .half_size_m = {4.0F, 2.0F, 4.0F},
+                                  .rotation = glm::angleAxis(0.5F, glm::vec3(0.0F, 1.0F, 0.0F)),
+                                  .extinction_per_m = 0.5F}};
+    const Fog fog(medium, 0.0);
+    for (const double slope : {0.0, 0.1}) {
+        const Ray up{{0.0, 0.0, 0.0}, glm::normalize(glm::dvec3(slope, 1.0, 0.0))};
+        EXPECT_NEAR(optical_depth_of_sky(fog, up, 1e-9).value.x, 2.0 * std::hypot(1.0, slope), 1e-7);
+    }
+    EXPECT_EQ(optical_depth_of_sky(fog, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 1e-9).value.x, 0.0);
 }
 
 TEST(Reference, Slab) {

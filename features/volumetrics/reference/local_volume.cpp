@@ -50,12 +50,8 @@ Coefficients blended(const LocalVolume& volume, const Coefficients& before, cons
     const Coefficients own{amount * glm::dvec3(volume.albedo), glm::dvec3(amount),
                            w * glm::dvec3(volume.emission_per_m)};
     switch (volume.blend) {
-    case VolumeBlend::subtract: {
-        const double left = std::fmax(0.0, before.extinction.x - amount);
-        return scaled(before, amount > 0.0 && before.extinction.x > 0.0 ? left / before.extinction.x
-                              : amount > 0.0                            ? 0.0
-                                                                        : 1.0);
-    }
+    case VolumeBlend::subtract:
+        return amount > 0.0 ? scaled(before, std::fmax(0.0, 1.0 - amount / before.extinction.x)) : before;
     case VolumeBlend::multiply: return scaled(before, 1.0 + w * (static_cast<double>(volume.factor) - 1.0));
     case VolumeBlend::max: return amount > before.extinction.x ? own : before;
     case VolumeBlend::add: break;

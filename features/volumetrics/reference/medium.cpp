@@ -1,7 +1,9 @@
 #include "features/volumetrics/reference/medium.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -80,6 +82,26 @@ double height_integral(double falloff_per_m, double from_m, double to_m, double 
     return length_m * (below + (1.0 - below) * std::exp(-falloff_per_m * start_m) * mean);
 }
 
+Fog::Fog(const Medium& medium, double time_s) : medium_(&medium), time_s_(time_s) {
+    std::copy_if(medium.volumes.begin(), medium.volumes.end(), std::back_inserter(volumes_), has_inside);
+}
+
+Coefficients Fog::changed(Coefficients before, const glm::dvec3& point) const {
+    for (const LocalVolume& volume : volumes_) {
+        before = blended(volume, before, point);
+    }
+    const double factor = noise_factor(point);
+    return {factor * before.scattering, factor * before.extinction, factor * before.emission};
+}
+
+double Fog::end_of_volumes(const Ray& ray) const {
+    double end_m = 0.0;
+    for (const LocalVolume& volume : volumes_) {
+        end_m = std::fmax(end_m, end_of_volume(volume, ray));
+    }
+    return end_m;
+}
+
 double Fog::noise_factor(const glm::dvec3& point) const {
     const DensityNoise& noise = medium_->noise;
     if (noise.amplitude == 0.0F) {
@@ -95,26 +117,29 @@ double Fog::height_profile(const glm::dvec3& point) const {
 }
 
 Coefficients Fog::at(const glm::dvec3& point) const {
-    const double factor = noise_factor(point);
     const HomogeneousFog& homogeneous = medium_->homogeneous;
     const HeightFog& height = medium_->height;
     const double here = height_profile(point);
     const double even = static_cast<double>(homogeneous.extinction_per_m);
     const double low = here * static_cast<double>(height.extinction_per_m);
-    return {factor * (even * glm::dvec3(homogeneous.albedo) + low * glm::dvec3(height.albedo)),
-            glm::dvec3(factor * (even + low)),
-            factor * (glm::dvec3(homogeneous.emission_per_m) + here * glm::dvec3(height.emission_per_m))};
+    const Coefficients everywhere{even * glm::dvec3(homogeneous.albedo) + low * glm::dvec3(height.albedo),
+                                  glm::dvec3(even + low),
+                                  glm::dvec3(homogeneous.emission_per_m) + here * glm::dvec3(height.emission_per_m)};
+    return changed(everywhere, point);
 }
 
 bool Fog::emits() const {
     const glm::vec3 none(0.0F);
-    return medium_->homogeneous.emission_per_m != none || medium_->height.emission_per_m != none;
+    return medium_->homogeneous.emission_per_m != none || medium_->height.emission_per_m != none ||
+           std::any_of(volumes_.begin(), volumes_.end(),
+                       [&](const LocalVolume& volume) { return volume.emission_per_m != none; });
 }
 
-Coefficients Fog::ending_at(const glm::dvec3& point) const {
+Coefficients Fog::ending_at(const glm::dvec3& point, const glm::dvec3& direction) const {
     const double height =
-        noise_factor(point) * height_profile(point) * static_cast<double>(medium_->height.extinction_per_m);
-    return {.scattering = height * glm::dvec3(medium_->height.albedo), .extinction = glm::dvec3(height)};
+        ends_toward(direction) ? height_profile(point) * static_cast<double>(medium_->height.extinction_per_m) : 0.0;
+    return changed({.scattering = height * glm::dvec3(medium_->height.albedo), .extinction = glm::dvec3(height)},
+                   point);
 }
 
 glm::dvec3 Fog::closed_optical_depth(const Ray& ray, double length_m) const {
@@ -146,6 +171,10 @@ glm::dvec3 Fog::closed_optical_depth_of_sky(const Ray& ray) const {
     return Fog(ending, time_s_).closed_optical_depth(ray, infinity);
 }
 
+double Fog::end_of_ending(const Ray& ray) const {
+    return std::fmax(ends_toward(ray.direction) ? top_of_height_fog(ray) : 0.0, end_of_volumes(ray));
+}
+
 bool Fog::ends_toward(const glm::dvec3& direction) const {
     return direction.y > 0.0 && medium_->height.falloff_per_m > 0.0F;
 }
@@ -166,7 +195,7 @@ double Fog::end_along(const Ray& ray) const {
         return infinity;
     }
     const bool is_high = medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none;
-    return is_high ? top_of_height_fog(ray) : 0.0;
+    return std::fmax(is_high ? top_of_height_fog(ray) : 0.0, end_of_volumes(ray));
 }
 
 void Fog::add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks) const {
@@ -181,6 +210,9 @@ void Fog::add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks)
                                     depths / static_cast<double>(medium_->height.falloff_per_m);
             add((height_m - ray.origin.y) / ray.direction.y); // not a number without falloff: not added
         }
+    }
+    for (const LocalVolume& volume : volumes_) {
+        add_volume_breaks(volume, ray, part, breaks);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "features/volumetrics/reference/geometry.hpp"
+#include "features/volumetrics/reference/local_volume.hpp"
 #include "features/volumetrics/settings.hpp"
 
 namespace tyndall::volumetrics::reference {
@@ -28,33 +29,31 @@ namespace tyndall::volumetrics::reference {
 /// base of the fog. In metres.
 [[nodiscard]] double height_integral(double falloff_per_m, double from_m, double to_m, double length_m);
 
-/// What is there per metre.
-struct Coefficients {
-    glm::dvec3 scattering{0.0};
-    glm::dvec3 extinction{0.0};
-    glm::dvec3 emission{0.0}; ///< radiance gained
-};
-
 /// The medium at one time.
 class Fog {
 public:
-    Fog(const Medium& medium, double time_s) : medium_(&medium), time_s_(time_s) {}
+    Fog(const Medium& medium, double time_s);
 
     [[nodiscard]] const Medium& medium() const { return *medium_; }
     [[nodiscard]] Coefficients at(const glm::dvec3& point) const;
 
     [[nodiscard]] bool emits() const;
 
-    /// Whether `closed_optical_depth` is the optical depth; else it is its mean over all noises.
-    [[nodiscard]] bool is_closed() const { return medium_->noise.amplitude == 0.0F; }
+    /// Whether `closed_optical_depth` is the optical depth; else it is its mean over all noises, without the local
+    /// volumes.
+    [[nodiscard]] bool is_closed() const { return medium_->noise.amplitude == 0.0F && volumes_.empty(); }
 
-    /// Optical depth without noise of the ray's first `length_m`; infinite where that is and the fog does not end.
+    /// Optical depth without noise and local volumes of the ray's first `length_m`; infinite where that is and the fog
+    /// does not end.
     [[nodiscard]] glm::dvec3 closed_optical_depth(const Ray& ray, double length_m) const;
 
     /// From a point toward an endless light. Of media without end nothing counts: the illuminance is what arrives in
     /// them. Those are the homogeneous fog, and the height fog unless it thins out on the way.
     [[nodiscard]] glm::dvec3 closed_optical_depth_of_sky(const Ray& ray) const;
-    [[nodiscard]] Coefficients ending_at(const glm::dvec3& point) const; ///< without the media without end
+    /// Without the media without end in that direction; local volumes end.
+    [[nodiscard]] Coefficients ending_at(const glm::dvec3& point, const glm::dvec3& direction) const;
+    /// Where on such a way the last of it ends: 0 where there is none.
+    [[nodiscard]] double end_of_ending(const Ray& ray) const;
     [[nodiscard]] bool ends_toward(const glm::dvec3& direction) const;
 
     /// Where the height fog has fallen to e^-45 of its base value, if the ray rises out of it; else infinity. Without
@@ -74,7 +73,12 @@ private:
     [[nodiscard]] double noise_factor(const glm::dvec3& point) const;
     [[nodiscard]] double height_profile(const glm::dvec3& point) const; ///< 1 at the base
 
+    /// `before` with volumes and noise.
+    [[nodiscard]] Coefficients changed(Coefficients before, const glm::dvec3& point) const;
+    [[nodiscard]] double end_of_volumes(const Ray& ray) const;
+
     const Medium* medium_;
+    std::vector<LocalVolume> volumes_; ///< those that are not empty
     double time_s_;
 };
 

@@ -97,11 +97,15 @@ Estimate optical_depth(const Fog& fog, const Ray& ray, double length_m, double w
 }
 
 Estimate optical_depth_of_sky(const Fog& fog, const Ray& ray, double wanted) {
-    if (fog.is_closed() || !fog.ends_toward(ray.direction)) {
+    if (fog.is_closed()) {
         return {fog.closed_optical_depth_of_sky(ray), glm::dvec3(0.0)};
     }
-    return summed(fog, ray, fog.top_of_height_fog(ray), wanted,
-                  [&](double t) { return fog.ending_at(point_at(ray, t)).extinction; });
+    const double end_m = fog.end_of_ending(ray);
+    if (!(end_m > 0.0)) {
+        return {};
+    }
+    return summed(fog, ray, end_m, wanted,
+                  [&](double t) { return fog.ending_at(point_at(ray, t), ray.direction).extinction; });
 }
 
 EyePath::EyePath(const Fog& fog, const Ray& ray, double length_m, double wanted) : fog_(fog), ray_(ray) {
