@@ -90,6 +90,51 @@ void write_phase(const Medium& medium, gpu::VolumetricParameters& u) {
     u.ambient_x = glm::vec4(order_1 * medium.ambient_sh_1[2], 0.0F);
 }
 
+/// The lobes in the form that shaders/common/far_field.h describes.
+gpu::PhaseTerms phase_terms(const PhaseLobes& phase) {
+    gpu::PhaseTerms terms{};
+    terms.spread = glm::vec4(1.0F);
+    float weights = 0.0F;
+    for (const PhaseLobe& lobe : phase.all()) {
+        weights += lobe.weight;
+    }
+    for (std::uint32_t index = 0; index < phase.count; ++index) {
+        const auto i = static_cast<int>(index);
+        const PhaseLobe& lobe = phase.lobes[index];
+        const PhaseForm form = phase_form(lobe);
+        terms.constant[i] = static_cast<float>(form.constant) * lobe.weight / weights;
+        terms.squared[i] = static_cast<float>(form.squared) * lobe.weight / weights;
+        terms.spread[i] = static_cast<float>(form.spread);
+        (lobe.g >= 0.0F ? terms.forward : terms.backward)[i] = static_cast<float>(form.chord);
+        terms.steep[i] = lobe.function == PhaseFunction::schlick ? 1.0F : 0.0F;
+    }
+    return terms;
+}
+
+/// From phase and ambient as `write_phase` left them, turned into view space.
+gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameters& u) {
+    const Medium& medium = frame.medium;
+    const glm::dmat3 view_from_render(frame.camera.view_from_render);
+    gpu::FarField far{};
+    far.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m);
+    far.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m);
+    far.up = glm::vec4(view_from_render * glm::dvec3(0.0, 1.0, 0.0),
+                       frame.camera.origin_m.y - static_cast<double>(medium.height.base_height_m));
+    far.sun_illuminance.w = medium.height.falloff_per_m;
+    if (frame.sun) {
+        const glm::dvec3 travel = glm::normalize(glm::dvec3(frame.sun->direction));
+        far.sun_direction = glm::vec4(view_from_render * travel, 0.0);
+        far.sun_illuminance = glm::vec4(frame.sun->illuminance_lux, medium.height.falloff_per_m);
+    }
+    far.phase = phase_terms(phase_of(medium));
+    far.ambient = u.ambient;
+    const glm::mat3 turn(view_from_render);
+    far.ambient_x = turn[0][0] * u.ambient_x + turn[1][0] * u.ambient_y + turn[2][0] * u.ambient_z;
+    far.ambient_y = turn[0][1] * u.ambient_x + turn[1][1] * u.ambient_y + turn[2][1] * u.ambient_z;
+    far.ambient_z = turn[0][2] * u.ambient_x + turn[1][2] * u.ambient_y + turn[2][2] * u.ambient_z;
+    return far;
+}
+
 /// The volumes that are not empty; their number.
 std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float emission_scale,
                             gpu::VolumetricParameters& u) {
@@ -188,6 +233,7 @@ bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& bef
     gpu::ScatteringVolume now = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
     now.scale.x = before->volume.scale.x;
     now.scale.y = before->volume.scale.y;
+    now.beyond = before->volume.beyond; // holds no froxel
     using Words = std::array<std::uint32_t, sizeof now / 4>;
     return std::bit_cast<Words>(now) != std::bit_cast<Words>(before->volume);
 }
@@ -237,6 +283,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
     u.emission_scale = glm::vec4(emission_scale, density_scale / emission_scale * radiance_scale, 0.0F, 0.0F);
     write_phase(medium, u);
+    u.volume.beyond = far_field(frame, u);
     u.temporal = temporal_parameters(frame, before, radiance_scale);
     const std::uint32_t frames_since_cut = before ? before->frames_since_cut + 1 : 0;
     u.jitter = jitter(frame, frames_since_cut);

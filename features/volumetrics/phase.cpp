@@ -79,6 +79,21 @@ double steepness(const PhaseLobes& phase) {
     return largest;
 }
 
+PhaseForm phase_form(const PhaseLobe& lobe) {
+    const double a = std::abs(static_cast<double>(lobe.g));
+    const double isotropic = 0.25 * std::numbers::inv_pi;
+    const double peaked = isotropic * (1.0 - a * a);
+    const double cornette_shanks = peaked * 1.5 / (2.0 + a * a);
+    switch (lobe.function) {
+    case PhaseFunction::rayleigh: return {.constant = 0.75 * isotropic, .squared = 0.75 * isotropic};
+    case PhaseFunction::henyey_greenstein: return {.constant = peaked, .spread = (1.0 - a) * (1.0 - a), .chord = a};
+    case PhaseFunction::schlick: return {.constant = peaked, .spread = 1.0 - a, .chord = 0.5 * a};
+    case PhaseFunction::cornette_shanks: return {cornette_shanks, cornette_shanks, (1.0 - a) * (1.0 - a), a};
+    case PhaseFunction::isotropic: break;
+    }
+    return {.constant = isotropic};
+}
+
 std::uint32_t packed_functions(const PhaseLobes& phase) {
     std::uint32_t packed = 0;
     for (std::uint32_t i = 0; i < phase.count; ++i) {

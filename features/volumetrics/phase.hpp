@@ -39,6 +39,16 @@ struct PhaseLobes {
 [[nodiscard]] double steepness(const PhaseLobe& lobe);
 [[nodiscard]] double steepness(const PhaseLobes& phase);
 
+/// A lobe's function as (constant + squared cos^2(theta)) s^-p with s = spread + chord c^2, where c is the chord from
+/// the function's peak and p is 2 for Schlick and 3/2 for the others.
+struct PhaseForm {
+    double constant = 0.0;
+    double squared = 0.0;
+    double spread = 1.0;
+    double chord = 0.0;
+};
+[[nodiscard]] PhaseForm phase_form(const PhaseLobe& lobe);
+
 /// What shaders/volumetrics/phase.glsl is specialised to.
 [[nodiscard]] std::uint32_t packed_functions(const PhaseLobes& phase);
 

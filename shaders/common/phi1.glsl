@@ -7,7 +7,7 @@
 float phi1(float x, float attenuation) {
     float series =
         1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0)))));
-    return abs(x) < 0.25 ? series : (1.0 - attenuation) / x;
+    return mix((1.0 - attenuation) / x, series, abs(x) < 0.25);
 }
 
 float phi1(float x) { return phi1(x, exp(-x)); }

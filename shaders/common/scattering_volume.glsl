@@ -7,6 +7,7 @@
 #define TYNDALL_SHADERS_COMMON_SCATTERING_VOLUME_GLSL
 
 #include "depth_law.glsl"
+#include "far_field.glsl"
 #include "scattering_volume.h"
 
 // View-space xy of uv's column at depth z (m).
@@ -49,7 +50,8 @@ float growth(float y) {
 }
 
 // Radiance scattered toward the eye in front of a point, and the transmittance from it to the eye. `depth_m` is the
-// point's view depth; beyond the range the values at the range are returned, in front of the eye none of the fog.
+// point's view depth. Beyond the range the ray goes on in closed form, so that both are continuous there; in front of
+// the eye there is no fog.
 //
 // Between boundary k and k + 1, at fraction f of the slice with x = tau_{k+1} - tau_k:
 //   tau = tau_k + g x,  L = L_k + (L_{k+1} - L_k) g phi1(g x) / phi1(x),
@@ -76,6 +78,13 @@ void scattering_lookup(ScatteringVolume volume, sampler2DArray accumulated, vec2
     float g = f + density_tilt(volume, x, x_neighbour, direction) * f * (1.0 - f);
     radiance = (near.rgb + (far.rgb - near.rgb) * (g * phi1(g * x) / phi1(x))) * volume.scale.y;
     transmittance = vec3(exp(-(near.a + g * x)));
+
+    float range_m = volume.law.range_shape.x;
+    vec3 slope = vec3(uv * volume.slope.xy + volume.slope.zw, -1.0);
+    vec3 start = vec3(column_xy(volume, uv, range_m), -range_m);
+    FarFog beyond = far_fog(volume.beyond, start, slope, max(depth_m - range_m, 0.0));
+    radiance += transmittance * beyond.radiance;
+    transmittance *= beyond.transmittance;
 }
 
 // Light that a particle at a point sends to the eye per unit of albedo: radiance in-scattered there per unit of

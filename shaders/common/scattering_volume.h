@@ -4,6 +4,7 @@
 #define TYNDALL_SHADERS_COMMON_SCATTERING_VOLUME_H
 
 #include "depth_law.h"
+#include "far_field.h"
 #include "interop.h"
 
 TYNDALL_INTEROP_BEGIN
@@ -22,6 +23,7 @@ struct ScatteringVolume {
     vec4 scale;  // x: stored radiance is radiance times this; y: its reciprocal; z: w / (e^w - 1);
                  // w: ln(1 + R / s) / N, at most 1.2
     DepthLaw law;
+    FarField beyond; // the fog behind the last boundary
 };
 
 TYNDALL_INTEROP_END

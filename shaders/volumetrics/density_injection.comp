@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "common/height_density.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
 #include "volumetrics/local_volumes.glsl"
@@ -22,18 +23,6 @@ layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D d
 #if EMISSION
 layout(set = 0, binding = 2, VOLUME_FORMAT) uniform writeonly restrict image3D emitted;
 #endif
-
-// Mean over the slice of e^(-falloff max(0, y - base)) along a ray between heights a and b above the base: exact, so
-// that the optical depth at slice boundaries is too. One part of the ray may lie below the base.
-float mean_height_density(float a, float b, float falloff) {
-    float low = min(a, b);
-    float high = max(a, b);
-    float low_above = max(low, 0.0);
-    float above = max(high - low_above, 0.0);
-    float fraction_above = high > low ? clamp(above / (high - low), 0.0, 1.0) : (low > 0.0 ? 1.0 : 0.0);
-    float mean_above = exp(-falloff * low_above) * phi1(falloff * above);
-    return mix(1.0, mean_above, fraction_above);
-}
 
 // The noise is faded where a froxel is too large to show it.
 float noise_factor(vec3 render_position, float froxel_m) {

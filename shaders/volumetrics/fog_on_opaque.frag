@@ -1,5 +1,6 @@
 // Opaque colour -> colour times transmittance plus in-scattered radiance, at each pixel's own depth. The blend unit does
-// it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog of the whole range.
+// it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog
+// of the whole ray, to infinity where the far plane lies there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
