@@ -1,5 +1,6 @@
 // Fog along the part of a ray that lies beyond the scattering volume's range: homogeneous and height fog, lit by the
-// sun without shadow and by the ambient.
+// sun without shadow and by the ambient. What emits ends at the range: without extinction its light over an infinite
+// path would be infinite.
 //
 // No branches, only choices between values: a branch on a value made from the fourth or a later uniform block of a
 // stage lets lavapipe 22.3.6 write past the end of its table of uniforms worth inlining, and crash.
