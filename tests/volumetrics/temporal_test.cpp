@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -132,6 +133,29 @@ TEST_F(Temporal, CutEqualsTheFirstFrameOfANewRun) {
     EXPECT_NE(first.in_scattered, third.in_scattered);
     scene.inputs.cut = true;
     EXPECT_EQ(render(scene).in_scattered, first.in_scattered);
+}
+
+TEST_F(Temporal, ChangeOfViewRangeOrGridStartsColdWithoutBeingTold) {
+    const std::vector<std::function<void(FrameInputs&)>> changes{
+        [](FrameInputs& in) { in.camera.clip_from_view[0][0] *= 1.1; },
+        [](FrameInputs& in) { in.settings.grid.range_m = 50.0F; },
+        [](FrameInputs& in) { in.settings.grid.shape_m = 8.0F; },
+        [](FrameInputs& in) { in.settings.grid.width = 32; },
+        [](FrameInputs& in) { in.settings.grid.slices = 12; },
+    };
+    for (const auto& change : changes) {
+        Scene scene = temporal_scene();
+        scene.inputs.settings.grid = {.width = 40, .height = 23, .slices = 16, .range_m = 64.0F, .shape_m = 16.0F};
+        add_slit(scene, 140.0F);
+        (void)render(scene);
+        (void)render(scene);
+        change(scene.inputs);
+        const Result changed = render(scene);
+        scene.inputs.cut = true;
+        const Result new_run = render(scene);
+        EXPECT_EQ(changed.in_scattered, new_run.in_scattered);
+        EXPECT_EQ(changed.color, new_run.color);
+    }
 }
 
 TEST_F(Temporal, ReprojectionFollowsTheWorldWhenTheCameraMovesAndTurns) {
