@@ -3,9 +3,11 @@
 #include <numbers>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "features/volumetrics/reference/medium.hpp"
+#include "features/volumetrics/reference/optical_depth.hpp"
 
 namespace tyndall::volumetrics::reference {
 namespace {
@@ -82,6 +84,22 @@ TEST(ReferenceMedium, OpticalDepthEqualsTheSum) {
         EXPECT_NEAR(depth(from, to), expected, 1e-6 * expected) << y;
         EXPECT_NEAR(depth(to, from), expected, 1e-6 * expected) << y;
     }
+}
+
+/// The way of the sun's light through a volume counts, that through fog without end does not.
+TEST(ReferenceMedium, SunThroughALocalVolume) {
+    Medium medium;
+    medium.homogeneous.extinction_per_m = 0.1F;
+    medium.volumes = {LocalVolume{.center_m = {0.0F, 10.0F, 0.0F},
+                                  .half_size_m = {4.0F, 2.0F, 4.0F},
+                                  .rotation = glm::angleAxis(0.5F, glm::vec3(0.0F, 1.0F, 0.0F)),
+                                  .extinction_per_m = 0.5F}};
+    const Fog fog(medium, 0.0);
+    for (const double slope : {0.0, 0.1}) {
+        const Ray up{{0.0, 0.0, 0.0}, glm::normalize(glm::dvec3(slope, 1.0, 0.0))};
+        EXPECT_NEAR(optical_depth_of_sky(fog, up, 1e-9).value.x, 2.0 * std::hypot(1.0, slope), 1e-7);
+    }
+    EXPECT_EQ(optical_depth_of_sky(fog, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 1e-9).value.x, 0.0);
 }
 
 } // namespace

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "features/volumetrics/reference/medium.hpp"
@@ -130,22 +129,6 @@ TEST(Reference, LocalVolumes) {
     expect(at_centre(VolumeBlend::multiply, 0.0F), {0.15, 0.3, 6.0});
     expect(at_centre(VolumeBlend::max, 0.4F), {0.1, 0.4, 5.0});
     expect(at_centre(VolumeBlend::max, 0.04F), {0.05, 0.1, 2.0});
-}
-
-/// The way of the sun's light through a volume counts, that through fog without end does not.
-TEST(Reference, SunThroughALocalVolume) {
-    Medium medium;
-    medium.homogeneous.extinction_per_m = 0.1F;
-    medium.volumes = {LocalVolume{.center_m = {0.0F, 10.0F, 0.0F},
-                                  .half_size_m = {4.0F, 2.0F, 4.0F},
-                                  .rotation = glm::angleAxis(0.5F, glm::vec3(0.0F, 1.0F, 0.0F)),
-                                  .extinction_per_m = 0.5F}};
-    const Fog fog(medium, 0.0);
-    for (const double slope : {0.0, 0.1}) {
-        const Ray up{{0.0, 0.0, 0.0}, glm::normalize(glm::dvec3(slope, 1.0, 0.0))};
-        EXPECT_NEAR(optical_depth_of_sky(fog, up, 1e-9).value.x, 2.0 * std::hypot(1.0, slope), 1e-7);
-    }
-    EXPECT_EQ(optical_depth_of_sky(fog, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 1e-9).value.x, 0.0);
 }
 
 TEST(Reference, Slab) {
