@@ -3,6 +3,7 @@
 // Invariant: two blocks without a conflict are ordered, all uses of one before all uses of the other.
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 
 #include "rendergraph/memory_types.hpp"
 
@@ -37,6 +38,61 @@ Scratch<std::uint32_t> first_after(const Schedule& schedule, const Scratch<Scrat
         }
     }
     return after;
+}
+
+struct Pair {
+    std::uint32_t a;
+    std::uint32_t b;
+};
+
+/// The pairs of blocks in conflict, `a` before `b`. Which blocks are done and which conflict is no pattern that a
+/// branch predictor could learn, so both are counted and nothing branches.
+template <typename QueueCount>
+Scratch<Pair> find_pairs(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives,
+                         QueueCount queues) {
+    Scratch<Pair> pairs(8 * blocks.size());
+    std::size_t pair_count = 0;
+    Scratch<std::uint32_t> active(blocks.size()); // what something still to come may meet
+    Scratch<std::uint32_t> active_after(blocks.size() *
+                                        queues); // beside it, by queue: the first position after its uses
+    std::size_t active_count = 0;
+    Scratch<std::uint32_t> frontier(queues, 0); // position of the first slot of each queue that is still to come
+    std::uint32_t slot = 0;
+    for (std::uint32_t block = 0; block < blocks.size(); ++block) {
+        for (; slot < blocks[block].first_slot; ++slot) {
+            ++frontier[schedule.queue[slot]];
+        }
+        if (pairs.size() < pair_count + active_count) {
+            pairs.resize(2 * pairs.size() + active_count);
+        }
+        const std::uint32_t* const first = lives.first.data() + std::size_t{block} * queues;
+        const std::uint32_t heap = blocks[block].heap;
+        Pair* pair = pairs.data() + pair_count;
+        std::uint32_t* kept = active.data();
+        std::uint32_t* kept_after = active_after.data();
+        const std::uint32_t* after = active_after.data();
+        for (std::size_t i = 0; i < active_count; ++i, after += queues) {
+            const std::uint32_t other = active[i];
+            bool before_all_to_come = true;
+            bool before_block = true;
+            for (std::uint32_t q = 0; q < queues; ++q) {
+                before_all_to_come &= frontier[q] >= after[q];
+                before_block &= first[q] >= after[q]; // always where it is `none`
+                kept_after[q] = after[q];
+            }
+            *pair = {other, block};
+            pair += static_cast<std::ptrdiff_t>(!before_block & (blocks[other].heap == heap));
+            *kept = other;
+            kept += static_cast<std::ptrdiff_t>(!before_all_to_come);
+            kept_after += before_all_to_come ? 0 : std::size_t{queues};
+        }
+        pair_count = static_cast<std::size_t>(pair - pairs.data());
+        std::copy_n(lives.after.data() + std::size_t{block} * queues, std::size_t{queues}, kept_after);
+        *kept = block;
+        active_count = static_cast<std::size_t>(kept - active.data()) + 1;
+    }
+    pairs.resize(pair_count);
+    return pairs;
 }
 
 } // namespace
@@ -81,34 +137,11 @@ Lives find_lives(const Schedule& schedule, std::span<const Block> blocks) {
 }
 
 Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives) {
-    const std::uint32_t queues = schedule.queue_count;
-    struct Pair {
-        std::uint32_t a;
-        std::uint32_t b;
-    };
     Scratch<Pair> pairs;
-    pairs.reserve(8 * blocks.size());
-    Scratch<std::uint32_t> active;
-    active.reserve(blocks.size());
-    Scratch<std::uint32_t> frontier(queues, 0); // position of the first slot of each queue that is still to come
-    std::uint32_t slot = 0;
-    for (std::uint32_t block = 0; block < blocks.size(); ++block) {
-        for (; slot < blocks[block].first_slot; ++slot) {
-            ++frontier[schedule.queue[slot]];
-        }
-        std::size_t kept = 0;
-        for (const std::uint32_t other : active) {
-            const std::uint32_t* after = lives.after.data() + std::size_t{other} * queues;
-            if (std::equal(frontier.begin(), frontier.end(), after, std::greater_equal<>())) {
-                continue;
-            }
-            active[kept++] = other;
-            if (blocks[other].heap == blocks[block].heap && !lives.entirely_before(other, block)) {
-                pairs.push_back({other, block});
-            }
-        }
-        active.resize(kept);
-        active.push_back(block);
+    switch (schedule.queue_count) { // a number that the compiler knows saves half of the time
+    case 1: pairs = find_pairs(schedule, blocks, lives, std::integral_constant<std::uint32_t, 1>{}); break;
+    case 2: pairs = find_pairs(schedule, blocks, lives, std::integral_constant<std::uint32_t, 2>{}); break;
+    default: pairs = find_pairs(schedule, blocks, lives, schedule.queue_count); break;
     }
     Conflicts conflicts{Scratch<std::uint32_t>(blocks.size() + 1, 0), Scratch<std::uint32_t>(2 * pairs.size())};
     for (const Pair& pair : pairs) {
@@ -147,29 +180,27 @@ VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& con
     for (const Block& block : blocks) {
         largest[block.heap] = std::max(largest[block.heap], block.size_bytes);
     }
-    Scratch<std::uint32_t> set;
-    Scratch<std::uint32_t> excluding(blocks.size(), 0); // by block: members of the set that exclude it
+    // By block: `nobody` and the number of members of the set that exclude it. What is not above `nobody` is of a set
+    // before this one.
+    Scratch<std::uint32_t> excluding(blocks.size(), 0);
+    std::uint32_t nobody = 0;
     const auto grow = [&](std::uint32_t start, std::span<const std::uint32_t> others) {
-        set.clear();
+        std::uint32_t all = nobody;
         VkDeviceSize bytes = 0;
         const auto add = [&](std::uint32_t member) {
-            set.push_back(member);
+            ++all;
             bytes += blocks[member].size_bytes;
             for (const std::uint32_t other : conflicts.of(member)) {
-                ++excluding[other];
+                excluding[other] = std::max(excluding[other], nobody) + 1;
             }
         };
         add(start);
         for (const std::uint32_t other : others) {
-            if (excluding[other] == set.size()) {
+            if (excluding[other] == all) {
                 add(other);
             }
         }
-        for (const std::uint32_t member : set) {
-            for (const std::uint32_t other : conflicts.of(member)) {
-                excluding[other] = 0;
-            }
-        }
+        nobody = all;
         largest[blocks[start].heap] = std::max(largest[blocks[start].heap], bytes);
     };
     Scratch<std::uint32_t> by_size;

@@ -30,16 +30,6 @@ struct Lives {
     Scratch<std::uint32_t> after;      ///< the first position that comes after all of its uses
     Scratch<std::uint32_t> live_begin; ///< the first position that comes after, or is, one of its uses
     Scratch<std::uint32_t> live_end;   ///< one past the last position that comes before, or is, one of its uses
-
-    /// Every use of `a` happens before every use of `b`.
-    [[nodiscard]] bool entirely_before(std::uint32_t a, std::uint32_t b) const {
-        for (std::uint32_t q = 0; q < queue_count; ++q) {
-            if (first[b * queue_count + q] < after[a * queue_count + q]) { // never where it is `none`
-                return false;
-            }
-        }
-        return true;
-    }
 };
 /// O(uses x queues x log slots).
 [[nodiscard]] Lives find_lives(const Schedule& schedule, std::span<const Block> blocks);
