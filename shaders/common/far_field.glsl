@@ -22,7 +22,9 @@ float phase_of_terms(PhaseTerms terms, vec3 travel, vec3 to_eye) {
     float forward = dot(difference, difference);
     float backward = dot(sum, sum);
     float cosine = 0.25 * (backward - forward);
-    vec4 root = 1.0 / sqrt(terms.spread + terms.forward * forward + terms.backward * backward);
+    // At least 1e-6 for every phase function; 0 only where all terms are, as in a volume with nothing beyond it.
+    vec4 s = max(terms.spread + terms.forward * forward + terms.backward * backward, 1e-12);
+    vec4 root = 1.0 / sqrt(s);
     vec4 peaks = root * root * root * mix(vec4(1.0), root, terms.steep);
     return dot(terms.constant + terms.squared * (cosine * cosine), peaks);
 }
