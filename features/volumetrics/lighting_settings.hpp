@@ -23,7 +23,7 @@ enum class SunVisibility : std::uint8_t {
 };
 
 struct VisibilitySettings {
-    SunVisibility method = SunVisibility::prefiltered;
+    SunVisibility method = SunVisibility::one_tap;
     std::uint32_t taps = 4; ///< of n_taps, [1, 64]
 };
 

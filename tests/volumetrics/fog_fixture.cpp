@@ -73,6 +73,7 @@ Scene plain_scene() {
 
 Scene sunlit_scene(float extent_m) {
     Scene scene = plain_scene();
+    scene.inputs.settings.visibility.method = SunVisibility::prefiltered;
     scene.inputs.medium.homogeneous = {.extinction_per_m = 0.01F, .albedo = glm::vec3(1.0F)};
     scene.inputs.sun =
         Sun{.direction = {0.0F, -1.0F, 0.0F}, .illuminance_lux = glm::vec3(10.0F), .casts_shadows = true};

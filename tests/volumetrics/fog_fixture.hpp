@@ -39,7 +39,8 @@ struct Scene {
 /// sky.
 [[nodiscard]] Scene plain_scene();
 
-/// A scene in which all passes of the sun's shadow run. Cascades cover `extent_m` around the camera, the sun above.
+/// A scene in which all passes of the sun's shadow run, those of the exponential shadow map too. Cascades cover
+/// `extent_m` around the camera, the sun above.
 [[nodiscard]] Scene sunlit_scene(float extent_m);
 
 /// The unit ray through a pixel's centre in view space, and the metres of it per metre of depth.
