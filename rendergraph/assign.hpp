@@ -12,6 +12,10 @@ namespace tyndall::rg::stages {
 /// Bits of logical queues; the first 32 queues of a topology are enough for anybody.
 using QueueMask = std::uint32_t;
 inline constexpr std::uint32_t most_queues = 32;
+/// Without counting bits, which is a library call where the target may lack the instruction.
+[[nodiscard]] constexpr bool is_one_queue(QueueMask queues) {
+    return queues != 0 && (queues & (queues - 1)) == 0;
+}
 
 /// By pass: the queues that it may run on. A pass with one queue only is not free.
 struct QueueChoices {

@@ -1,9 +1,24 @@
 // Leaving out what no one needs, with the reason.
 // In: edges, order. Out: kept passes with the reason each lives, culled ones with the first consumer that was missing.
 // Invariant: removing culled passes changes no content that a root can see. O(passes + edges).
+#include <algorithm>
+
 #include "rendergraph/stages.hpp"
 
 namespace tyndall::rg::stages {
+namespace {
+
+enum class Touched : std::uint8_t { never, by_culled, by_kept };
+
+/// The first resource that the pass writes, `none` if it writes nothing.
+std::uint32_t first_output(const GraphDesc& graph, const PassDesc& pass) {
+    const auto begin = graph.accesses.begin() + pass.first_access;
+    const auto end = begin + pass.access_count;
+    const auto write = std::find_if(begin, end, [](const AccessDesc& access) { return is_write(access.direction); });
+    return write == end ? none : write->resource;
+}
+
+} // namespace
 
 Kept cull(const GraphDesc& graph, const Flow& flow, const Order& order, bool enabled) {
     const std::size_t count = graph.passes.size();
@@ -37,7 +52,6 @@ Kept cull(const GraphDesc& graph, const Flow& flow, const Order& order, bool ena
         first_in[i + 1] += first_in[i];
     }
     Scratch<std::uint32_t> first_consumer(count, none);
-    Scratch<std::uint32_t> first_output(count, none);
     for (auto pass = order.passes.rbegin(); pass != order.passes.rend(); ++pass) {
         for (std::uint32_t i = first_in[*pass]; i < first_in[*pass + 1]; ++i) {
             const Edge& edge = flow.edges[i];
@@ -51,31 +65,27 @@ Kept cull(const GraphDesc& graph, const Flow& flow, const Order& order, bool ena
             }
         }
     }
-    for (const AccessDesc& access : graph.accesses) {
-        if (is_write(access.direction) && first_output[access.pass] == none) {
-            first_output[access.pass] = access.resource;
-        }
-    }
-    Scratch<bool> touched(graph.resources.size(), false);
-    Scratch<bool> touched_by_kept(graph.resources.size(), false);
     for (std::uint32_t pass = 0; pass < count; ++pass) {
         // What touches nothing is of another form than the one compiled; it goes even with culling off.
-        const bool may_go = enabled || graph.passes[pass].access_count == 0;
+        const PassDesc& desc = graph.passes[pass];
+        const bool may_go = enabled || desc.access_count == 0;
         if (!kept.pass[pass] && may_go) {
             const bool no_consumer = first_consumer[pass] == none;
             kept.culled_passes.push_back({pass, no_consumer ? CullReason::no_consumer : CullReason::consumer_culled,
-                                          no_consumer ? first_output[pass] : first_consumer[pass]});
+                                          no_consumer ? first_output(graph, desc) : first_consumer[pass]});
         }
         kept.pass[pass] = kept.pass[pass] || !may_go;
     }
+    Scratch<Touched> touched(graph.resources.size(), Touched::never);
     for (const AccessDesc& access : graph.accesses) {
-        touched[access.resource] = true;
-        touched_by_kept[access.resource] = touched_by_kept[access.resource] || kept.pass[access.pass];
+        touched[access.resource] =
+            std::max(touched[access.resource], kept.pass[access.pass] ? Touched::by_kept : Touched::by_culled);
     }
     for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
-        if (!touched_by_kept[resource]) {
-            kept.culled_resources.push_back(
-                {resource, touched[resource] ? CullReason::all_passes_culled : CullReason::never_used});
+        if (touched[resource] != Touched::by_kept) {
+            kept.culled_resources.push_back({resource, touched[resource] == Touched::never
+                                                           ? CullReason::never_used
+                                                           : CullReason::all_passes_culled});
         }
     }
     return kept;

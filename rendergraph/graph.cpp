@@ -14,6 +14,14 @@ std::uint32_t next_identity(const void* builder, std::uint32_t previous) {
     return next == 0 ? 1 : next;
 }
 
+/// What the last graph of the thread held: the next one will be much the same, and so grows without moving.
+struct Sizes {
+    std::size_t resources = 64; // what most frames stay below
+    std::size_t passes = 64;
+    std::size_t accesses = 256;
+};
+thread_local Sizes expected;
+
 } // namespace
 
 std::string_view name_of(PassKind kind) {
@@ -51,48 +59,54 @@ VkClearValue clear_depth(float depth, std::uint32_t stencil) {
 }
 
 GraphBuilder::GraphBuilder() : id_(next_identity(this, 0)) {
-    // What most frames stay below, so that declaring them moves nothing.
-    desc_.resources.reserve(64);
-    desc_.passes.reserve(64);
-    desc_.accesses.reserve(256);
+    desc_.resources.reserve(expected.resources);
+    latest_version_.reserve(expected.resources);
+    desc_.passes.reserve(expected.passes);
+    callbacks_.entries_.reserve(expected.passes);
+    desc_.accesses.reserve(expected.accesses);
 }
 
 template <typename Handle>
-Handle GraphBuilder::add_resource(ResourceDesc resource) {
+Handle GraphBuilder::add_resource(std::string_view name, ResourceKind kind, Where where) {
     const auto index = static_cast<std::uint32_t>(desc_.resources.size());
-    desc_.resources.push_back(std::move(resource));
+    ResourceDesc& resource = desc_.resources.emplace_back();
+    resource.name = name;
+    resource.kind = kind;
+    resource.where = where;
     latest_version_.push_back(0);
     return Handle{id_, index, 0};
 }
 
 Image GraphBuilder::create_image(std::string_view name, const ImageDesc& desc, Where where) {
-    return add_resource<Image>({.name = std::string(name), .kind = ResourceKind::image, .image = desc, .where = where});
+    const auto image = add_resource<Image>(name, ResourceKind::image, where);
+    desc_.resources.back().image = desc;
+    return image;
 }
 
 Buffer GraphBuilder::create_buffer(std::string_view name, const BufferDesc& desc, Where where) {
-    return add_resource<Buffer>(
-        {.name = std::string(name), .kind = ResourceKind::buffer, .buffer = desc, .where = where});
+    const auto buffer = add_resource<Buffer>(name, ResourceKind::buffer, where);
+    desc_.resources.back().buffer = desc;
+    return buffer;
 }
 
 Image GraphBuilder::import_image(std::string_view name, const ImageDesc& desc, const ImportDesc& import, Where where) {
-    desc_.imports.push_back(import);
-    return add_resource<Image>({.name = std::string(name),
-                                .kind = ResourceKind::image,
-                                .lifetime = ResourceLifetime::imported,
-                                .image = desc,
-                                .import = static_cast<std::uint32_t>(desc_.imports.size() - 1),
-                                .where = where});
+    const Image image = create_image(name, desc, where);
+    import_last_resource(import);
+    return image;
 }
 
 Buffer GraphBuilder::import_buffer(std::string_view name, const BufferDesc& desc, const ImportDesc& import,
                                    Where where) {
+    const Buffer buffer = create_buffer(name, desc, where);
+    import_last_resource(import);
+    return buffer;
+}
+
+void GraphBuilder::import_last_resource(const ImportDesc& import) {
+    ResourceDesc& resource = desc_.resources.back();
+    resource.lifetime = ResourceLifetime::imported;
+    resource.import = static_cast<std::uint32_t>(desc_.imports.size());
     desc_.imports.push_back(import);
-    return add_resource<Buffer>({.name = std::string(name),
-                                 .kind = ResourceKind::buffer,
-                                 .lifetime = ResourceLifetime::imported,
-                                 .buffer = desc,
-                                 .import = static_cast<std::uint32_t>(desc_.imports.size() - 1),
-                                 .where = where});
 }
 
 template <typename Handle>
@@ -112,13 +126,15 @@ Handle GraphBuilder::add_history(Handle current, ResourceKind kind, Where where)
         return Handle{};
     }
     source.has_history = true;
-    ResourceDesc history = source;
-    history.name = source.name + " (previous frame)";
-    history.lifetime = ResourceLifetime::history;
-    history.has_history = false;
-    history.history_of = current.resource;
-    history.where = where;
-    return add_resource<Handle>(std::move(history));
+    const ResourceDesc of = source; // which moves as the list grows
+    const auto history = add_resource<Handle>(of.name + " (previous frame)", kind, where);
+    ResourceDesc& added = desc_.resources.back();
+    added.lifetime = ResourceLifetime::history;
+    added.concurrent = of.concurrent;
+    added.image = of.image;
+    added.buffer = of.buffer;
+    added.history_of = current.resource;
+    return history;
 }
 
 Image GraphBuilder::history_of(Image current, Where where) {
@@ -141,8 +157,13 @@ void GraphBuilder::share_between_queues(Buffer buffer) {
 
 PassBuilder GraphBuilder::add_pass(std::string_view name, PassKind kind, Where where) {
     const auto index = static_cast<std::uint32_t>(desc_.passes.size());
-    desc_.passes.push_back(
-        {.name = std::string(name), .kind = kind, .variant = variant_, .form = form_, .point = point_, .where = where});
+    PassDesc& pass = desc_.passes.emplace_back();
+    pass.name = name;
+    pass.kind = kind;
+    pass.variant = variant_;
+    pass.form = form_;
+    pass.point = point_;
+    pass.where = where;
     callbacks_.entries_.emplace_back();
     return {*this, index};
 }
@@ -174,23 +195,24 @@ const BufferDesc* GraphBuilder::describe(Buffer buffer) const {
 
 template <typename Handle>
 bool GraphBuilder::check_handle(const Handle& handle, ResourceKind kind, std::uint32_t pass, Where where) {
-    const std::string pass_name = pass == none ? "" : desc_.passes[pass].name;
     const bool known = handle.graph == id_ && handle.resource < desc_.resources.size() &&
                        desc_.resources[handle.resource].kind == kind &&
                        handle.version <= latest_version_[handle.resource];
     if (!known) {
-        report(
-            {.code = DiagnosticCode::foreign_handle,
-             .pass = pass_name,
-             .message = (pass == none ? std::string("A handle") : "Pass '" + pass_name + "' uses a handle that") +
-                        (handle.valid() ? (pass == none ? " that comes" : " comes") +
-                                              std::string(" from another graph or an earlier frame; declare it here")
-                                        : (pass == none ? " that was" : " was") +
-                                              std::string(" never initialised; create or import the resource first")),
-             .where = where,
-             .other_where = pass == none ? where : desc_.passes[pass].where});
+        report_unknown(handle.valid(), pass, where);
     }
     return known;
+}
+
+void GraphBuilder::report_unknown(bool initialised, std::uint32_t pass, Where where) {
+    const std::string pass_name = pass == none ? "" : desc_.passes[pass].name;
+    report({.code = DiagnosticCode::foreign_handle,
+            .pass = pass_name,
+            .message = (pass == none ? std::string("A handle that ") : "Pass '" + pass_name + "' uses a handle that ") +
+                       (initialised ? "comes from another graph or an earlier frame; declare it here"
+                                    : "was never initialised; create or import the resource first"),
+            .where = where,
+            .other_where = pass == none ? where : desc_.passes[pass].where});
 }
 
 template <typename Handle>
@@ -273,6 +295,7 @@ DeclaredGraph GraphBuilder::finish() {
             pass.first_access = i;
         }
     }
+    expected = {desc_.resources.size(), desc_.passes.size(), desc_.accesses.size()};
     DeclaredGraph declared{std::move(desc_), std::move(callbacks_)};
     desc_ = {};
     callbacks_ = {};

@@ -183,10 +183,12 @@ private:
     friend class PassBuilder;
     template <typename Handle>
     [[nodiscard]] bool check_handle(const Handle& handle, ResourceKind kind, std::uint32_t pass, Where where);
+    void report_unknown(bool initialised, std::uint32_t pass, Where where);
     template <typename Handle>
     void add_access(std::uint32_t pass, Handle& handle, ResourceKind kind, AccessDesc access);
     template <typename Handle>
-    Handle add_resource(ResourceDesc resource);
+    Handle add_resource(std::string_view name, ResourceKind kind, Where where);
+    void import_last_resource(const ImportDesc& import);
     template <typename Handle>
     Handle add_history(Handle current, ResourceKind kind, Where where);
 

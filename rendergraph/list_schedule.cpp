@@ -80,7 +80,7 @@ private:
 Scratch<std::int64_t> bound_work(const Work& work) {
     Scratch<std::int64_t> bound(work.queue_count, 0);
     for (std::uint32_t item = 0; item < work.pass.size(); ++item) {
-        if (std::has_single_bit(work.allowed[item])) {
+        if (is_one_queue(work.allowed[item])) {
             bound[static_cast<std::uint32_t>(std::countr_zero(work.allowed[item]))] += work.duration_ns[item];
         }
     }
@@ -104,7 +104,7 @@ ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs
     Scratch<std::uint32_t> queue(count);
     for (const std::uint32_t item : urgency.items) {
         const std::int64_t duration = work.duration_ns[item];
-        const bool free = !std::has_single_bit(work.allowed[item]);
+        const bool free = !is_one_queue(work.allowed[item]);
         std::uint32_t best_queue = none;
         std::int64_t best_start = 0;
         Lane::Place best;

@@ -52,13 +52,15 @@ std::uint32_t heap_of(std::vector<Heap>& heaps, std::uint32_t memory_type_bits) 
 }
 
 /// One behind the other.
-Packing pack_without_sharing(std::span<const Block> blocks, std::uint32_t heap_count) {
+Packing pack_without_sharing(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
+                             VkDeviceSize live_bytes) {
     Packing packing{Scratch<VkDeviceSize>(blocks.size()), Scratch<VkDeviceSize>(heap_count, 0)};
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         VkDeviceSize& heap_bytes = packing.heap_bytes[blocks[i].heap];
         packing.offset_bytes[i] = align_up(heap_bytes, blocks[i].alignment);
         heap_bytes = packing.offset_bytes[i] + blocks[i].size_bytes;
     }
+    packing.bound_bytes = std::max(live_bytes, exclusive_bytes(blocks, conflicts, heap_count));
     return packing;
 }
 
@@ -240,14 +242,13 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     const auto heap_count = static_cast<std::uint32_t>(memory.heaps.size());
     const Lives lives = find_lives(schedule, blocks);
     const Conflicts conflicts = find_conflicts(schedule, blocks, lives);
-    const std::size_t tries = std::clamp<std::size_t>(blocks.size() / 8, 2, 16); // cheap beside the packing
-    memory.bound_bytes =
-        std::max(exclusive_bytes(blocks, conflicts, heap_count, tries), largest_live_set(schedule, blocks, lives));
+    const VkDeviceSize live_bytes = largest_live_set(schedule, blocks, lives);
     const std::optional<Packing> kept =
         previous != nullptr ? packing_of(*previous, blocks, conflicts, heap_count) : std::nullopt;
-    const Packing packing = options.aliasing ? pack(blocks, conflicts, heap_count, memory.bound_bytes, options.effort,
-                                                    kept ? &*kept : nullptr)
-                                             : pack_without_sharing(blocks, heap_count);
+    const Packing packing =
+        options.aliasing ? pack(blocks, conflicts, heap_count, live_bytes, options.effort, kept ? &*kept : nullptr)
+                         : pack_without_sharing(blocks, conflicts, heap_count, live_bytes);
+    memory.bound_bytes = packing.bound_bytes;
     for (std::uint32_t i = 0; i < blocks.size(); ++i) {
         Placement& placement = memory.placements[blocks[i].resource];
         placement.heap = blocks[i].heap;

@@ -159,8 +159,7 @@ Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks
     return conflicts;
 }
 
-VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
-                             std::size_t tries) {
+VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count) {
     struct Start {
         VkDeviceSize weight;
         std::uint32_t block;
@@ -172,7 +171,8 @@ VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& con
             starts[block].weight += other < block ? blocks[other].size_bytes : 0;
         }
     }
-    tries = std::min(tries, starts.size());
+    const std::size_t tries =
+        std::min(std::clamp<std::size_t>(blocks.size() / 8, 2, 16), blocks.size()); // cheap beside the packing
     std::partial_sort(
         starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(tries), starts.end(),
         [](const Start& a, const Start& b) { return a.weight != b.weight ? a.weight > b.weight : a.block < b.block; });

@@ -92,65 +92,83 @@ std::size_t pack_in_order(std::span<const Block> blocks, const Conflicts& confli
     return order.size();
 }
 
-} // namespace
+/// All blocks by first slot, or by another key, descending.
+Scratch<std::uint32_t> as_they_come(std::size_t count) {
+    Scratch<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0U);
+    return order;
+}
+template <typename Key>
+Scratch<std::uint32_t> descending_by(std::span<const Block> blocks, Key&& key) {
+    Scratch<std::uint32_t> order = as_they_come(blocks.size());
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto key_a = key(blocks[a]);
+        const auto key_b = key(blocks[b]);
+        return key_a != key_b ? key_a > key_b : a < b;
+    });
+    return order;
+}
 
-Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
-             VkDeviceSize bound_bytes, Effort effort, const Packing* kept) {
-    if (kept != nullptr && kept->total_bytes <= bound_bytes) {
-        return *kept;
-    }
-    Packing best{Scratch<VkDeviceSize>(blocks.size()), Scratch<VkDeviceSize>(heap_count)};
-    Packing other = best;
-    Scratch<std::uint32_t> as_they_come(blocks.size()); // by first slot
-    std::iota(as_they_come.begin(), as_they_come.end(), 0U);
-    const auto descending_by = [&](auto key) {
-        Scratch<std::uint32_t> order = as_they_come;
-        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            const auto key_a = key(blocks[a]);
-            const auto key_b = key(blocks[b]);
-            return key_a != key_b ? key_a > key_b : a < b;
-        });
-        return order;
-    };
+/// Tries the other orders until `best` has nothing to spare over `bound_bytes`.
+void improve(std::span<const Block> blocks, const Conflicts& conflicts, Scratch<std::uint32_t> by_size,
+             VkDeviceSize bound_bytes, Effort effort, Packing& best) {
     const auto find_lowest = [](std::span<const Extent> taken, const Block& block, VkDeviceSize /*heap_bytes*/) {
         return lowest_gap(taken, block);
     };
     const auto life = [](const Block& block) { return block.last_slot - block.first_slot + 1; };
-    Scratch<std::uint32_t> order = descending_by([](const Block& block) { return block.size_bytes; });
-    pack_in_order(blocks, conflicts, order, smallest_gap, unplaced, best);
-    if (kept != nullptr && kept->total_bytes <= best.total_bytes) {
-        best = *kept;
-    }
-    if (best.total_bytes <= bound_bytes) {
-        return best;
-    }
-
-    const auto improve = [&](Scratch<std::uint32_t> tried, std::size_t rounds) {
+    Packing other = best;
+    const auto try_order = [&](Scratch<std::uint32_t> order, std::size_t rounds) {
         for (std::size_t round = 0; round < rounds && best.total_bytes > bound_bytes; ++round) {
-            const std::size_t end = pack_in_order(blocks, conflicts, tried, find_lowest, best.total_bytes, other);
-            if (end == tried.size()) {
+            const std::size_t end = pack_in_order(blocks, conflicts, order, find_lowest, best.total_bytes, other);
+            if (end == order.size()) {
                 std::swap(best, other);
             } else {
-                const auto culprit = tried.begin() + static_cast<std::ptrdiff_t>(end);
-                std::rotate(tried.begin(), culprit, culprit + 1);
+                const auto culprit = order.begin() + static_cast<std::ptrdiff_t>(end);
+                std::rotate(order.begin(), culprit, culprit + 1);
             }
         }
     };
     if (effort == Effort::thorough && blocks.size() <= most_exact_blocks) {
         // Some order is optimal: that of the offsets in an optimal packing.
+        Scratch<std::uint32_t> order = as_they_come(blocks.size());
         do {
-            improve(as_they_come, 1);
-        } while (std::next_permutation(as_they_come.begin(), as_they_come.end()));
-        return best;
+            try_order(order, 1);
+        } while (std::next_permutation(order.begin(), order.end()));
+        return;
     }
     const std::size_t rounds =
         effort == Effort::thorough
             ? std::clamp<std::size_t>(most_steps / std::max<std::size_t>(blocks.size(), 1), 2, 64)
             : 2;
-    improve(descending_by(life), rounds);
-    improve(descending_by([&](const Block& block) { return block.size_bytes * life(block); }), rounds);
-    improve(as_they_come, rounds);
-    improve(std::move(order), rounds);
+    try_order(descending_by(blocks, life), rounds);
+    try_order(descending_by(blocks, [&](const Block& block) { return block.size_bytes * life(block); }), rounds);
+    try_order(as_they_come(blocks.size()), rounds);
+    try_order(std::move(by_size), rounds);
+}
+
+} // namespace
+
+Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
+             VkDeviceSize live_bytes, Effort effort, const Packing* kept) {
+    Packing best;
+    if (kept != nullptr && kept->total_bytes <= live_bytes) {
+        best = *kept;
+        best.bound_bytes = live_bytes;
+        return best;
+    }
+    best.offset_bytes.resize(blocks.size());
+    best.heap_bytes.resize(heap_count);
+    Scratch<std::uint32_t> by_size = descending_by(blocks, [](const Block& block) { return block.size_bytes; });
+    pack_in_order(blocks, conflicts, by_size, smallest_gap, unplaced, best);
+    if (kept != nullptr && kept->total_bytes <= best.total_bytes) {
+        best = *kept;
+    }
+    VkDeviceSize bound_bytes = live_bytes;
+    if (best.total_bytes > bound_bytes) {
+        bound_bytes = std::max(bound_bytes, exclusive_bytes(blocks, conflicts, heap_count));
+        improve(blocks, conflicts, std::move(by_size), bound_bytes, effort, best);
+    }
+    best.bound_bytes = bound_bytes;
     return best;
 }
 

@@ -47,23 +47,25 @@ struct Conflicts {
 [[nodiscard]] Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives);
 
 /// Bytes that no packing can do without: for each heap the largest set found of blocks that all exclude each other.
-/// Greedy from the `tries` blocks whose conflicts weigh most. O(conflicts + tries x row squared).
+/// Greedy from the few blocks whose conflicts weigh most. O(conflicts + tries x row squared).
 [[nodiscard]] VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& conflicts,
-                                           std::uint32_t heap_count, std::size_t tries);
+                                           std::uint32_t heap_count);
 
 struct Packing {
     Scratch<VkDeviceSize> offset_bytes; ///< by block
     Scratch<VkDeviceSize> heap_bytes;   ///< by heap
     VkDeviceSize total_bytes = 0;
+    VkDeviceSize bound_bytes = 0; ///< no packing is smaller
 };
 /// Greedy orders, of which the lowest total is kept, the first of equals: by size, descending, each into the smallest
 /// gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, by first slot,
 /// and by size again. From each of these last four the block with which the best total is reached goes to the front and
 /// the order is tried again, once or, with thorough effort, a bounded number of times. Up to seven blocks thorough
-/// effort tries all orders, which is optimal. Ends at `bound_bytes`, below which there is nothing. `kept`, if given, is
-/// a valid packing that stays unless another is smaller. O(orders x conflicts x log), the number of tries falling with
-/// the number of blocks.
+/// effort tries all orders, which is optimal. Ends at the larger of `live_bytes`, a bound that the caller knows, and
+/// exclusive_bytes, which is only sought where the first packing is above the other. `kept`, if given, is a valid
+/// packing that stays unless another is smaller. O(orders x conflicts x log), the number of tries falling with the
+/// number of blocks.
 [[nodiscard]] Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uint32_t heap_count,
-                           VkDeviceSize bound_bytes, Effort effort, const Packing* kept = nullptr);
+                           VkDeviceSize live_bytes, Effort effort, const Packing* kept = nullptr);
 
 } // namespace tyndall::rg::stages

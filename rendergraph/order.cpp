@@ -2,6 +2,7 @@
 // In: edges. Out: an order, ties by declaration. Invariant: the same graph gives the same order. O(edges log passes).
 #include <algorithm>
 #include <functional>
+#include <numeric>
 #include <queue>
 
 #include "rendergraph/stages.hpp"
@@ -38,6 +39,13 @@ Scratch<std::uint32_t> find_cycle(const Flow& flow, const Scratch<std::uint32_t>
 Order order_passes(const GraphDesc& graph, const Flow& flow) {
     Order order;
     const std::size_t count = graph.passes.size();
+    const bool as_declared =
+        std::all_of(flow.edges.begin(), flow.edges.end(), [](const Edge& edge) { return edge.from < edge.to; });
+    if (as_declared) { // which is what the smallest index first comes to
+        order.passes.resize(count);
+        std::iota(order.passes.begin(), order.passes.end(), 0U);
+        return order;
+    }
     Scratch<std::uint32_t> incoming(count, 0);
     Scratch<std::uint32_t> first_out(count + 1, 0);
     for (const Edge& edge : flow.edges) {

@@ -188,10 +188,10 @@ QueueChoices choose_queues(const GraphDesc& graph, const QueueTopology& topology
     while (any_asked_away && keep_unshared_imports_together(graph, topology, kept, choices)) {
     }
     for (std::uint32_t pass = 0; pass < count; ++pass) {
-        if (std::popcount(choices.allowed[pass]) == 1) {
+        if (is_one_queue(choices.allowed[pass])) {
             choices.allowed[pass] = QueueMask{1} << choices.home[pass];
         }
-        choices.any_free = choices.any_free || std::popcount(choices.allowed[pass]) > 1;
+        choices.any_free = choices.any_free || !is_one_queue(choices.allowed[pass]);
         choices.any_away = choices.any_away || (kept.pass[pass] && choices.home[pass] != 0);
     }
     return choices;

@@ -39,7 +39,7 @@ public:
         : work_(work), queues_(queues), slowdown_(slowdown), bound_to_(work.queue_count, 0) {}
     void add(std::uint32_t item) {
         total_ += work_.duration_ns[item];
-        if (std::has_single_bit(work_.allowed[item])) {
+        if (is_one_queue(work_.allowed[item])) {
             bound_to_[static_cast<std::uint32_t>(std::countr_zero(work_.allowed[item]))] += work_.duration_ns[item];
         }
     }
@@ -85,8 +85,11 @@ Urgency urgency_of(const Work& work, const Costs& costs) {
         for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
             // The mean over all pairs of queues, of which those with one queue for both cost nothing.
             const QueueMask there = work.allowed[work.in[edge]];
-            const int pairs = std::popcount(here) * std::popcount(there);
-            const std::int64_t mean = cross_ns * (pairs - std::popcount(here & there)) / pairs;
+            std::int64_t mean = 0;
+            if (here != there || !is_one_queue(here)) {
+                const int pairs = std::popcount(here) * std::popcount(there);
+                mean = cross_ns * (pairs - std::popcount(here & there)) / pairs;
+            }
             std::int64_t& before = rank[work.in[edge]];
             before = std::max(before, rank[item] + mean);
         }

@@ -143,9 +143,8 @@ private:
     }
 
     [[nodiscard]] std::uint32_t only_queue(std::uint32_t item) const {
-        return std::has_single_bit(work_.allowed[item])
-                   ? static_cast<std::uint32_t>(std::countr_zero(work_.allowed[item]))
-                   : none;
+        return is_one_queue(work_.allowed[item]) ? static_cast<std::uint32_t>(std::countr_zero(work_.allowed[item]))
+                                                 : none;
     }
     [[nodiscard]] bool ready(std::uint32_t item) const {
         for (std::uint32_t edge = work_.first_in[item]; edge < work_.first_in[item + 1]; ++edge) {

@@ -31,6 +31,12 @@ public:
     }
 
 private:
+    /// A dependency of some cells of a resource.
+    struct OfCells {
+        FoundDependency made;
+        Scratch<std::uint32_t> cells;
+    };
+
     std::span<const Use> uses_of(std::uint32_t resource) const {
         return {schedule_.uses.data() + schedule_.first_use[resource],
                 schedule_.first_use[resource + 1] - schedule_.first_use[resource]};
@@ -88,14 +94,14 @@ private:
         if (uses.empty()) {
             return;
         }
-        found_.clear();
+        of_cells_.clear();
         const Before entry = state_on_the_way_in(resource);
         const ResourceCells& of = cells_.of_resource[resource];
         cell_uses_.sort(of, uses);
         for (std::uint32_t cell = 0; cell < of.count(); ++cell) {
             visit_cell(resource, cell, cell_uses_.of(cell), entry);
         }
-        for (const CellDependency& found : found_) {
+        for (OfCells& found : of_cells_) {
             add_ranges(resource, found);
         }
     }
@@ -202,7 +208,7 @@ private:
             emit(resource, cell, before, group, **local, true);
             after.uses = {&*local, 1};
         } else {
-            CellDependency made = build(resource, before, group, *group.uses.front(), true);
+            FoundDependency made = build(resource, before, group, *group.uses.front(), true);
             Dependency& d = made.dependency;
             d.dst_queue = d.src_queue = writer.queue;
             d.local_stages = d.src_stages;
@@ -211,7 +217,7 @@ private:
             d.dst_access = VK_ACCESS_2_MEMORY_READ_BIT;
             made.release_batch = batches_.batch_of[writer.slot];
             made.only_at_release = true;
-            record(std::move(made), cell);
+            record(made, cell);
             return;
         }
         for_first_on_other_queues(group, writer.queue,
@@ -229,9 +235,9 @@ private:
         }
     }
 
-    CellDependency build(std::uint32_t resource, const Before& before, const Group& group, const Use& consumer,
-                         bool transition) const {
-        CellDependency made{{}, consumer.slot, none, false, {}};
+    FoundDependency build(std::uint32_t resource, const Before& before, const Group& group, const Use& consumer,
+                          bool transition) const {
+        FoundDependency made{.slot = consumer.slot};
         Dependency& d = made.dependency;
         d.resource = resource;
         d.consumer = consumer.pass;
@@ -298,7 +304,7 @@ private:
     }
 
     /// EXCLUSIVE resources whose content crosses families are released by the last use and acquired by the next.
-    void set_ownership(Dependency& d, CellDependency& made, std::uint32_t resource, const Before& before,
+    void set_ownership(Dependency& d, FoundDependency& made, std::uint32_t resource, const Before& before,
                        std::uint32_t family) const {
         if (schedule_.concurrent[resource] || memory_.placements[resource].concurrent || d.discards) {
             return;
@@ -319,12 +325,12 @@ private:
 
     void emit(std::uint32_t resource, std::uint32_t cell, const Before& before, const Group& group, const Use& consumer,
               bool transition) {
-        CellDependency made = build(resource, before, group, consumer, transition);
+        FoundDependency made = build(resource, before, group, consumer, transition);
         const bool nothing_before = before.uses.empty() && before.host_stages == 0;
         if (nothing_before && !transition && !made.dependency.transfers_ownership) {
             return;
         }
-        record(std::move(made), cell);
+        record(made, cell);
     }
 
     void leave(std::uint32_t resource, std::uint32_t cell, const Before& before) {
@@ -359,7 +365,7 @@ private:
         if (!transition && !transfers && (stages == 0 || reads_what_was_there)) {
             return;
         }
-        CellDependency made{{}, exit_slot_, none, false, {}};
+        FoundDependency made{.slot = exit_slot_};
         Dependency& d = made.dependency;
         d.resource = resource;
         d.hazard = hazard;
@@ -373,10 +379,10 @@ private:
         d.transfers_ownership = transfers;
         d.src_family = transfers ? own_family : VK_QUEUE_FAMILY_IGNORED;
         d.dst_family = transfers ? family : VK_QUEUE_FAMILY_IGNORED;
-        record(std::move(made), cell);
+        record(made, cell);
     }
 
-    void record(CellDependency made, std::uint32_t cell) {
+    void record(FoundDependency& made, std::uint32_t cell) {
         Dependency& d = made.dependency;
         if (full_barriers_) {
             d.src_stages = d.dst_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -385,34 +391,33 @@ private:
             d.local_access = d.local_stages != 0 ? d.src_access : 0;
         }
         if (cells_.of_resource[d.resource].whole) {
-            all_.push_back({d, made.slot, made.release_batch, made.only_at_release, {}});
+            all_.push_back(made);
             return;
         }
         // Cells with the same dependency become one record.
-        for (CellDependency& other : found_) {
-            if (other.slot == made.slot && other.only_at_release == made.only_at_release &&
-                other.release_batch == made.release_batch && same_but_range(other.dependency, d)) {
-                other.cells.push_back(cell);
-                return;
-            }
+        const auto same = std::find_if(of_cells_.begin(), of_cells_.end(), [&](const OfCells& other) {
+            return other.made.slot == made.slot && other.made.only_at_release == made.only_at_release &&
+                   other.made.release_batch == made.release_batch && same_but_range(other.made.dependency, d);
+        });
+        if (same != of_cells_.end()) {
+            same->cells.push_back(cell);
+        } else {
+            of_cells_.push_back({made, Scratch<std::uint32_t>(1, cell)});
         }
-        made.cells.push_back(cell);
-        found_.push_back(std::move(made));
     }
 
     /// Splits the cells of one record into rectangles of mips and layers, or runs of bytes.
-    void add_ranges(std::uint32_t resource, const CellDependency& found) {
+    void add_ranges(std::uint32_t resource, OfCells& found) {
         const ResourceCells& of = cells_.of_resource[resource];
+        Dependency& part = found.made.dependency;
         for (const CellRange& range : as_rectangles(of, found.cells)) {
-            CellDependency part{found.dependency, found.slot, found.release_batch, found.only_at_release, {}};
             if (graph_.resources[resource].kind == ResourceKind::image) {
-                part.dependency.image_range = {range.first_mip, range.mip_count, range.first_layer, range.layer_count,
-                                               0};
+                part.image_range = {range.first_mip, range.mip_count, range.first_layer, range.layer_count, 0};
             } else {
                 const VkDeviceSize begin = of.boundaries[range.first_layer];
-                part.dependency.buffer_range = {begin, of.boundaries[range.first_layer + range.layer_count] - begin};
+                part.buffer_range = {begin, of.boundaries[range.first_layer + range.layer_count] - begin};
             }
-            all_.push_back(std::move(part));
+            all_.push_back(found.made);
         }
     }
 
@@ -425,9 +430,9 @@ private:
     bool full_barriers_;
     std::uint32_t exit_slot_;
     Synchronised out_;
-    Scratch<CellDependency> all_;
+    Scratch<FoundDependency> all_;
     // Of the resource at hand; members, so that their memory serves all resources.
-    Scratch<CellDependency> found_;
+    Scratch<OfCells> of_cells_;
     Scratch<const Use*> entry_uses_;
     CellUses cell_uses_;
 };

@@ -7,9 +7,9 @@ namespace tyndall::rg::stages {
 namespace {
 
 /// Indices into `found` by slot, those of one slot as they were found.
-Scratch<std::uint32_t> by_slot(std::span<const CellDependency> found, std::uint32_t exit_slot) {
+Scratch<std::uint32_t> by_slot(std::span<const FoundDependency> found, std::uint32_t exit_slot) {
     Scratch<std::uint32_t> next(exit_slot + 2, 0);
-    for (const CellDependency& one : found) {
+    for (const FoundDependency& one : found) {
         ++next[one.slot + 1];
     }
     std::partial_sum(next.begin(), next.end(), next.begin());
@@ -22,11 +22,11 @@ Scratch<std::uint32_t> by_slot(std::span<const CellDependency> found, std::uint3
 
 } // namespace
 
-void collect(std::span<const CellDependency> found, std::uint32_t exit_slot, Synchronised& out) {
+void collect(std::span<const FoundDependency> found, std::uint32_t exit_slot, Synchronised& out) {
     const Scratch<std::uint32_t> order = by_slot(found, exit_slot);
     out.dependencies.reserve(found.size());
     out.first_of_slot.assign(exit_slot + 1, 0);
-    const auto add = [&](const CellDependency& one) {
+    const auto add = [&](const FoundDependency& one) {
         if (one.release_batch != none) {
             out.releases[one.release_batch].push_back(static_cast<std::uint32_t>(out.dependencies.size()));
         }

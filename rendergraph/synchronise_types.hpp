@@ -64,17 +64,16 @@ struct Before {
     return import.has_final && (moves || changes);
 }
 
-struct CellDependency {
-    Dependency dependency;
-    std::uint32_t slot; ///< of the consumer, the number of slots for exits
+struct FoundDependency {
+    Dependency dependency = {};
+    std::uint32_t slot = 0; ///< of the consumer, the number of slots for exits
     std::uint32_t release_batch = none;
     bool only_at_release = false; ///< recorded at the end of release_batch and nowhere else
-    Scratch<std::uint32_t> cells; ///< empty: the whole resource
 };
 
 /// Fills the dependencies of `out`, whose `releases` has a list for each batch, in the order in which a frame records
 /// them. Exits have the slot `exit_slot`. O(found).
-void collect(std::span<const CellDependency> found, std::uint32_t exit_slot, Synchronised& out);
+void collect(std::span<const FoundDependency> found, std::uint32_t exit_slot, Synchronised& out);
 
 [[nodiscard]] inline bool same_but_range(const Dependency& a, const Dependency& b) {
     return a.producer == b.producer && a.consumer == b.consumer && a.hazard == b.hazard &&
