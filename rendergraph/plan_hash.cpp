@@ -98,12 +98,16 @@ void add(Hasher& hash, const PassDesc& pass) {
 
 void add(Hasher& hash, const AccessDesc& access, bool of_image) {
     const auto& [pass, resource, version, kind, direction, clears, clear, image_range, buffer_range, where] = access;
+    const bool whole = of_image ? image_range == ImageRange{} : buffer_range == BufferRange{}; // as most are
     const std::uint32_t bits = static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(direction) << 16U |
-                               static_cast<std::uint32_t>(clears) << 24U;
+                               static_cast<std::uint32_t>(clears) << 24U | static_cast<std::uint32_t>(whole) << 25U;
     hash.add(pair(pass, resource), pair(version, bits));
     if (clears) {
         hash.add(pair(clear.color.uint32[0], clear.color.uint32[1]),
                  pair(clear.color.uint32[2], clear.color.uint32[3]));
+    }
+    if (whole) {
+        return;
     }
     if (of_image) {
         add(hash, image_range);
