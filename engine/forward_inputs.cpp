@@ -16,7 +16,7 @@ std::optional<T> on(rg::Blackboard& blackboard) {
 void ForwardInputs::find(rg::Blackboard& blackboard, bool transparent) {
     sun = on<SunShadow>(blackboard);
     lights = on<SceneLights>(blackboard);
-    if (lights && lights->count == 0) {
+    if (lights && lights->records.empty()) {
         lights.reset();
     }
     if (lights) {

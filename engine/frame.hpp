@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -9,6 +10,7 @@
 #include <vulkan/vulkan_core.h>
 
 #include "rendergraph/executor.hpp"
+#include "shaders/common/lights.h"
 #include "shaders/common/sun_shadow.h"
 
 namespace tyndall::engine {
@@ -35,8 +37,8 @@ struct FrameSun {
 
 /// From the point `frame_begin` on. Without lights `lights` is not valid.
 struct SceneLights {
-    rg::Buffer lights; ///< gpu::GpuLight[count], render space
-    std::uint32_t count = 0;
+    rg::Buffer lights;                      ///< gpu::GpuLight[], render space
+    std::span<const gpu::GpuLight> records; ///< what it holds; valid while the frame is declared
 };
 
 /// From the point `after_shadow_maps` on, when the sun casts shadows: see shaders/common/sun_shadow.h.

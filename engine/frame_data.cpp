@@ -109,10 +109,11 @@ void FrameData::write_places(std::uint32_t slot, const glm::dvec3& origin_m, con
     for (std::size_t i = 0; i < instances.size(); ++i) {
         places[i] = make_gpu_instance(instances[i], origin_m);
     }
-    const std::span<gpu::GpuLight> light_places = into.lights.mapped_as<gpu::GpuLight>();
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        light_places[i] = make_gpu_light(lights[i], origin_m, settings);
+    into.light_records.clear();
+    for (const Light& light : lights) {
+        into.light_records.push_back(make_gpu_light(light, origin_m, settings));
     }
+    std::copy(into.light_records.begin(), into.light_records.end(), into.lights.mapped_as<gpu::GpuLight>().begin());
 }
 
 void FrameData::write_sun(std::uint32_t slot, const gpu::SunCascades& sun) {

@@ -31,11 +31,12 @@ struct FrameLook {
 class FrameData {
 public:
     struct Slot {
-        Buffer parameters;                  ///< gpu::FrameParameters
-        Buffer instances;                   ///< gpu::GpuInstance, by Scene::instances
-        Buffer lights;                      ///< gpu::GpuLight
-        Buffer sun;                         ///< gpu::SunCascades
-        std::optional<glm::dvec3> origin_m; ///< render space that instances and lights are in
+        Buffer parameters;                        ///< gpu::FrameParameters
+        Buffer instances;                         ///< gpu::GpuInstance, by Scene::instances
+        Buffer lights;                            ///< gpu::GpuLight
+        std::vector<gpu::GpuLight> light_records; ///< what `lights` holds
+        Buffer sun;                               ///< gpu::SunCascades
+        std::optional<glm::dvec3> origin_m;       ///< render space that instances and lights are in
     };
     [[nodiscard]] static tl::expected<FrameData, Error> create(const Device& device, std::uint32_t frames_in_flight,
                                                                std::size_t instance_count, std::size_t light_count);

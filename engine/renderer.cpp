@@ -119,7 +119,7 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
                .casts_shadows = !casters_.empty()};
     }
     blackboard.put(sun);
-    SceneLights lights{.lights = {}, .count = light_count};
+    SceneLights lights{.lights = {}, .records = slot.light_records};
     if (light_count > 0) {
         lights.lights = import(graph, "lights", slot.lights);
     } else {

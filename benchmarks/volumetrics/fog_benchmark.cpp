@@ -37,9 +37,9 @@ public:
                                                             .device = device.handle(),
                                                             .memory_properties = device.memory_properties(),
                                                             .frames_in_flight = 2}))) {
-        const std::vector<gpu::GpuLight> lights = make_lights();
-        lights_ = upload(lights.data(), lights.size() * sizeof(gpu::GpuLight), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-        light_count_ = static_cast<std::uint32_t>(lights.size());
+        light_records_ = make_lights();
+        lights_ = upload(light_records_.data(), light_records_.size() * sizeof(gpu::GpuLight),
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
         const gpu::SunCascades cascades = make_cascades();
         cascades_ = upload(&cascades, sizeof cascades, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
     }
@@ -58,7 +58,9 @@ public:
         rg::GraphBuilder graph;
         std::vector<rg::ImportBinding> imports;
         volumetrics::FrameInputs inputs = settings;
-        inputs.light_count = inputs.light_count == 0 ? 0 : light_count_;
+        if (!inputs.lights.empty()) {
+            inputs.lights = light_records_;
+        }
         if (!executor_.wait_for_slot()) {
             why = "the device was lost";
             return false;
@@ -196,7 +198,7 @@ private:
     volumetrics::Feature feature_;
     MappedBuffer lights_;
     MappedBuffer cascades_;
-    std::uint32_t light_count_ = 0;
+    std::vector<gpu::GpuLight> light_records_;
     std::uint64_t frames_ = 0;
     std::map<std::string, double> times_ms_;
 };
@@ -209,7 +211,7 @@ volumetrics::FrameInputs full_frame(bool with_lights) {
     inputs.medium.phase_g = 0.4F;
     inputs.medium.ambient_radiance = glm::vec3(0.1F);
     inputs.sun = volumetrics::Sun{.illuminance_lux = glm::vec3(50.0F), .casts_shadows = true};
-    inputs.light_count = with_lights ? 1 : 0;
+    inputs.lights.resize(with_lights ? 1 : 0); // stands for those of FogBench
     glm::dmat4 p(0.0);
     p[0][0] = 1.0;
     p[1][1] = -16.0 / 9.0;

@@ -167,12 +167,13 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
     }
     frame.camera_stands = camera_stands(inputs, state.before);
     frame.parameters = volumetric_parameters(inputs, state.before);
-    frame.cluster_parameters = light_clusters(inputs.settings.grid, inputs.light_count, frame.parameters.volume.law);
+    const auto light_count = static_cast<std::uint32_t>(inputs.lights.size());
+    frame.cluster_parameters = light_clusters(inputs.settings.grid, light_count, frame.parameters.volume.law);
     frame.emission = emission_bound(inputs.medium) > 0.0F;
     frame.sun_shadow = shines(inputs) && inputs.sun->casts_shadows;
-    if (inputs.light_count > 0) {
-        const bool cluster = inputs.settings.clusters && inputs.light_count > 1;
-        const bool compact = inputs.light_count <= TYNDALL_COMPACT_LIGHT_COUNT;
+    if (light_count > 0) {
+        const bool cluster = inputs.settings.clusters && light_count > 1;
+        const bool compact = light_count <= TYNDALL_COMPACT_LIGHT_COUNT;
         frame.lights = !cluster ? LocalLights::all : compact ? LocalLights::clustered_compact : LocalLights::clustered;
     }
     state.frame = frame;
@@ -182,10 +183,7 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
     }
     state.host_buffers->write(inputs.frame_slot, state.frame->parameters);
     state.host_buffers->write(inputs.frame_slot, state.frame->cluster_parameters);
-    state.before = FrameMemory{.camera = inputs.camera,
-                               .volume = state.frame->parameters.volume,
-                               .storage = inputs.settings.storage,
-                               .frames_since_cut = state.frame->parameters.frame.x};
+    state.before = memory_of(inputs, state.frame->parameters);
     return {};
 }
 
@@ -196,7 +194,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     }
     FrameState& frame = *state.frame;
     if (frame.lights != LocalLights::none && !resources.lights.valid()) {
-        return tl::unexpected(Error{"light_count is not 0, so declare_frame_begin needs the light buffer."});
+        return tl::unexpected(Error{"lights is not empty, so declare_frame_begin needs the light buffer."});
     }
     frame.light_buffer = resources.lights;
     const HostBuffers::Slot& slot = state.host_buffers->slot(frame.inputs.frame_slot);
@@ -221,7 +219,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
         state.omit("light clustering", "there is no local light");
     } else {
         state.omit("light clustering",
-                   frame.inputs.light_count == 1 ? "there is one local light" : "it is switched off");
+                   frame.inputs.lights.size() == 1 ? "there is one local light" : "it is switched off");
     }
     return {};
 }

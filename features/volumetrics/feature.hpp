@@ -36,7 +36,7 @@ struct FeatureInfo {
     std::vector<std::uint32_t> queue_families = {};
 };
 
-/// gpu::GpuLight each, FrameInputs::light_count of them, in render space; needed only when there are any.
+/// FrameInputs::lights as a buffer; needed only when there are any.
 struct FrameBeginResources {
     rg::Buffer lights;
 };

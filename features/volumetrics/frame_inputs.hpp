@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include "features/volumetrics/settings.hpp"
+#include "shaders/common/lights.h"
 
 #include <vulkan/vulkan_core.h>
 
@@ -32,10 +34,10 @@ struct FrameInputs {
     Settings settings;
     Camera camera;
     std::optional<Sun> sun;
-    std::uint32_t light_count = 0;                         ///< entries of the light buffer given to declare_frame_begin
-    double time_s = 0.0;                                   ///< moves the noise with its wind
-    bool cut = false;                                      ///< history and jitter start anew
-    std::uint32_t frame_slot = 0;                          ///< in [0, frames_in_flight): Executor::next_slot
+    std::vector<gpu::GpuLight> lights; ///< what the buffer given to declare_frame_begin holds, in the same order
+    double time_s = 0.0;               ///< moves the noise with its wind
+    bool cut = false;                  ///< history and jitter start anew
+    std::uint32_t frame_slot = 0;      ///< in [0, frames_in_flight): Executor::next_slot
     VkFormat color_format = VK_FORMAT_R16G16B16A16_SFLOAT; ///< of the image given to declare_after_opaque
 };
 

@@ -9,6 +9,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "features/volumetrics/change.hpp"
+
 namespace tyndall::volumetrics {
 namespace {
 
@@ -59,6 +61,7 @@ glm::vec4 temporal_parameters(const FrameInputs& frame, const std::optional<Fram
     glm::vec4 result(weight, std::ceil(1.0F / weight), 1.0F, 0.0F);
     if (before) {
         result.z = radiance_scale / before->volume.scale.x;
+        result.w = change_everywhere(frame, *before);
     }
     return result;
 }
@@ -161,6 +164,22 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float
     return count;
 }
 
+/// Their number.
+std::size_t write_changes(const FrameInputs& frame, const std::optional<FrameMemory>& before,
+                          gpu::VolumetricParameters& u) {
+    if (!before) {
+        return 0;
+    }
+    u.motion.x = static_cast<float>(glm::distance(frame.camera.origin_m, before->camera.origin_m));
+    std::size_t count = 0;
+    for (const LightChange& change : light_changes(frame, *before)) {
+        u.changed_lights[2 * count] = change.before;
+        u.changed_lights[2 * count + 1] = change.now;
+        ++count;
+    }
+    return count;
+}
+
 } // namespace
 
 gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera, float radiance_scale) {
@@ -210,7 +229,7 @@ float radiance_scale_for(const FrameInputs& frame) {
     double scale = 1.0;
     if (brightest > largest) {
         scale = std::exp2(-std::ceil(std::log2(brightest / largest)));
-    } else if (brightest > 0.0 && brightest < smallest && frame.light_count == 0) {
+    } else if (brightest > 0.0 && brightest < smallest && frame.lights.empty()) {
         scale = std::exp2(std::min(std::floor(std::log2(smallest / brightest)), 100.0));
     }
     return static_cast<float>(scale);
@@ -223,6 +242,16 @@ gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_
             .block = glm::uvec4(cluster_block, (light_count + 31U) / 32U),
             .counts = glm::uvec4(counts, 0),
             .law = law};
+}
+
+FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters& parameters) {
+    return {.camera = frame.camera,
+            .medium = frame.medium,
+            .sun = frame.sun,
+            .lights = frame.lights,
+            .volume = parameters.volume,
+            .storage = frame.settings.storage,
+            .frames_since_cut = parameters.frame.x};
 }
 
 bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
@@ -295,8 +324,8 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
         u.esm_exponents[i] = frame.settings.shadow.esm_exponent[static_cast<std::size_t>(i)];
     }
     u.depth = depth_coefficients(frame.camera.clip_from_view);
-    u.frame =
-        glm::uvec4(frames_since_cut, frame.light_count, write_volumes(frame, density_scale, emission_scale, u), 0);
+    u.frame = glm::uvec4(frames_since_cut, frame.lights.size(), write_volumes(frame, density_scale, emission_scale, u),
+                         write_changes(frame, before, u));
     return u;
 }
 

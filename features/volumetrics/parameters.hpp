@@ -15,10 +15,16 @@ inline constexpr glm::uvec3 cluster_block{8, 8, 2};
 /// What the next frame needs of this one.
 struct FrameMemory {
     Camera camera;
+    Medium medium;
+    std::optional<Sun> sun;
+    std::vector<gpu::GpuLight> lights; ///< in the render space of `camera`
     gpu::ScatteringVolume volume;
     StorageFormat storage = StorageFormat::fp16;
     std::uint32_t frames_since_cut = 0;
 };
+
+/// `parameters` are those that were made of `frame`.
+[[nodiscard]] FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters& parameters);
 
 /// The volume that the grid settings and a camera span. `radiance_scale` is what radiance is stored times.
 [[nodiscard]] gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera,

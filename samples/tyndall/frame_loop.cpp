@@ -147,7 +147,8 @@ Result FrameLoop::declare_reads(rg::GraphBuilder& graph, rg::Blackboard& blackbo
     }
     if (wishes.stages != nullptr && glue_) {
         const engine::SceneLights* lights = blackboard.find<engine::SceneLights>();
-        if (Result declared = wishes.stages->declare(graph, glue_->feature(), glue_->fog().settings, lights->count);
+        const auto light_count = static_cast<std::uint32_t>(lights->records.size());
+        if (Result declared = wishes.stages->declare(graph, glue_->feature(), glue_->fog().settings, light_count);
             !declared) {
             return declared;
         }

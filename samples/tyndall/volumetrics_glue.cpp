@@ -67,7 +67,7 @@ void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& black
     if (sun.illuminance_lux != glm::vec3(0.0F)) {
         inputs.sun = volumetrics::Sun{sun.direction, sun.illuminance_lux, sun.casts_shadows};
     }
-    inputs.light_count = lights.count;
+    inputs.lights.assign(lights.records.begin(), lights.records.end());
     inputs.time_s = view.time_s;
     inputs.cut = view.cut;
     inputs.frame_slot = view.frame_slot;

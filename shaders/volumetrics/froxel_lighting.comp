@@ -52,6 +52,7 @@ layout(set = 0, binding = 6, std430) readonly restrict buffer Masks { uint masks
 #if HISTORY
 layout(set = 0, binding = 7) uniform sampler3D history; // linear, clamps
 layout(push_constant) uniform Push { uint history_valid; };
+#include "volumetrics/light_change.glsl"
 #endif
 
 vec3 sun_scattering(RaySegment segment, float depth_m) {
@@ -105,6 +106,24 @@ vec4 fetch_history(ivec3 froxel, float near_m) {
     old.rgb *= u.temporal.z;
     return is_finite(old) ? old : vec4(0.0);
 }
+
+// How much the light of the froxel has changed since, in parts of itself: sun, ambient and phase function everywhere,
+// the direction of view with the camera's way, local lights where they reach. Its diagonal and a half hold the parts of
+// its neighbours that history is filtered from.
+float change_since(RaySegment segment, float depth_m) {
+    float change = u.temporal.w;
+    if (!camera_stands) {
+        float distance_m = length(segment.position);
+        change += u.phase.x * u.motion.x / max(distance_m, max(u.motion.x, 1e-10));
+    }
+    vec2 cell_m = (u.volume.slope.xy * depth_m + u.volume.origin.xy) / (u.volume.grid.xy - 1.0);
+    float reach_m = 1.5 * length(vec3(cell_m, segment.behind_m + segment.ahead_m));
+    for (uint i = 0u; i < u.frame.w; ++i) {
+        change += light_change(u.changed_lights[2u * i], u.changed_lights[2u * i + 1u], segment.position, reach_m,
+                               u.phase.x);
+    }
+    return change;
+}
 #endif
 
 void main() {
@@ -150,7 +169,7 @@ void main() {
         old = fetch_history(ivec3(froxel), near_m);
     }
     if (old.a > 0.0) {
-        float age = min(old.a, u.temporal.y) + 1.0;
+        float age = min(old.a, min(u.temporal.y, oldest_age(change_since(segment, depth_m)))) + 1.0;
         result.rgb = mix(old.rgb, result.rgb, max(1.0 / age, u.temporal.x));
         result.a = age;
     }

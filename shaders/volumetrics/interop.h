@@ -4,6 +4,7 @@
 
 #include "../common/interop.h"
 #include "../common/light_clusters.h"
+#include "../common/lights.h"
 #include "../common/scattering_volume.h"
 
 TYNDALL_INTEROP_BEGIN
@@ -19,6 +20,9 @@ struct GpuLocalVolume {
     vec4 emission;         // rgb, times emission_scale.x; a 0
     vec4 edge_shape_blend; // x: 1 / edge, 0 where it is hard; y: VolumeShape; z: VolumeBlend; w 0
 };
+
+// At most as many lights that have changed since the frame before.
+#define TYNDALL_LIGHT_CHANGE_COUNT 16
 
 struct VolumetricParameters {
     ScatteringVolume volume; // first, so that those who only look up bind the same buffer
@@ -46,7 +50,8 @@ struct VolumetricParameters {
     vec4 phase_asymmetry; // g or k of each lobe
     vec4 phase_weight;    // of each lobe, of sum 1
     vec4 temporal;        // x: steady weight of a new frame; y: oldest age, frames; z: history's radiance times z is in
-                          // this frame's scale; w 0
+                          // this frame's scale; w: part by which the light of every froxel may have changed since
+    vec4 motion;          // x: way of the camera since the frame before, m; yzw 0
     vec4 jitter;          // xyz: this frame's offset in [0, 1); w: 0 samples the centre of each froxel
     vec4 ambient;         // rgb radiance from every direction
     vec4 ambient_x;       // rgb: what scattering leaves of the part of ambient radiance that is proportional to the x of
@@ -57,8 +62,9 @@ struct VolumetricParameters {
     vec4 esm_exponents;   // k of each cascade, per unit of shadow depth
     vec4 esm_size;        // x: texels of a side of the ESM; y: 1 / x; z: texels of a side of a cascade; w: 1 / z
     vec4 depth;           // view depth of device depth d: (x - d y) / (z + d w)
-    uvec4 frame;          // x: frames since the last cut; y: lights; z: local volumes; w 0
+    uvec4 frame;          // x: frames since the last cut; y: lights; z: local volumes; w: pairs of changed_lights
     GpuLocalVolume volumes[TYNDALL_LOCAL_VOLUME_COUNT]; // the first frame.z
+    GpuLight changed_lights[2 * TYNDALL_LIGHT_CHANGE_COUNT]; // the first frame.w pairs: before, now
 };
 
 // Lights that fit the smallest uniform buffer that Vulkan allows, 16 KiB.

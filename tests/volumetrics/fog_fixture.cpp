@@ -154,7 +154,7 @@ Result FogTest::render(const Scene& scene) {
     upload(graph, "upload depth", import_written("depth data", depth_data), depth);
 
     FrameInputs inputs = scene.inputs;
-    inputs.light_count = static_cast<std::uint32_t>(scene.lights.size());
+    inputs.lights = scene.lights;
     inputs.frame_slot = executor().next_slot();
     EXPECT_TRUE(executor().wait_for_slot());
     FrameBeginResources begin;

@@ -84,24 +84,26 @@ TEST(Parameters, SkyOfAnInfiniteProjectionIsFar) {
 TEST(Parameters, ColdStarts) {
     FrameInputs frame;
     frame.camera.clip_from_view = perspective(1.0, 0.5625, 0.1, 0.0);
-    const auto memory_of = [](const FrameInputs& f) {
-        return FrameMemory{f.camera, scattering_volume(f.settings.grid, f.camera, 1.0F), f.settings.storage, 7};
+    const auto memory = [](const FrameInputs& f) {
+        FrameMemory seventh = memory_of(f, volumetric_parameters(f, std::nullopt));
+        seventh.frames_since_cut = 7;
+        return seventh;
     };
     EXPECT_TRUE(starts_cold(frame, std::nullopt));
-    EXPECT_FALSE(starts_cold(frame, memory_of(frame)));
+    EXPECT_FALSE(starts_cold(frame, memory(frame)));
     FrameInputs other = frame;
     other.cut = true;
-    EXPECT_TRUE(starts_cold(other, memory_of(frame)));
+    EXPECT_TRUE(starts_cold(other, memory(frame)));
     other = frame;
     other.camera.clip_from_view = perspective(0.9, 0.5625, 0.1, 0.0);
-    EXPECT_TRUE(starts_cold(other, memory_of(frame)));
+    EXPECT_TRUE(starts_cold(other, memory(frame)));
     other = frame;
     other.settings.grid.range_m = 65.0F;
-    EXPECT_TRUE(starts_cold(other, memory_of(frame)));
+    EXPECT_TRUE(starts_cold(other, memory(frame)));
     other = frame;
     other.camera.origin_m.x = 0.5;
-    EXPECT_FALSE(starts_cold(other, memory_of(frame)));
-    EXPECT_EQ(volumetric_parameters(other, memory_of(frame)).frame.x, 8U);
+    EXPECT_FALSE(starts_cold(other, memory(frame)));
+    EXPECT_EQ(volumetric_parameters(other, memory(frame)).frame.x, 8U);
 }
 
 TEST(Parameters, ReprojectionMovesAPointWithTheWorld) {
@@ -109,8 +111,7 @@ TEST(Parameters, ReprojectionMovesAPointWithTheWorld) {
     frame.camera.clip_from_view = perspective(1.0, 0.5625, 0.1, 0.0);
     frame.camera.origin_m = {1e6, 20.0, -3e5};
     frame.camera.view_from_render = glm::rotate(glm::dmat4(1.0), 0.4, glm::normalize(glm::dvec3(1.0, 2.0, 0.5)));
-    FrameMemory before{frame.camera, scattering_volume(frame.settings.grid, frame.camera, 1.0F), frame.settings.storage,
-                       0};
+    FrameMemory before = memory_of(frame, volumetric_parameters(frame, std::nullopt));
     before.camera.origin_m = {1e6 - 0.25, 20.5, -3e5};
     before.camera.view_from_render = glm::rotate(glm::dmat4(1.0), -0.1, glm::dvec3(0.0, 1.0, 0.0));
     const glm::dvec3 world = frame.camera.origin_m + glm::dvec3(3.0, -2.0, -7.0);
@@ -142,9 +143,9 @@ TEST(Parameters, DimFogAndThinFogKeepTheDigitsOfHalfPrecision) {
     const double scale = static_cast<double>(radiance_scale_for(frame));
     EXPECT_GE(1e-9 * scale, 256.0);
     EXPECT_LE(1e-9 * scale, 512.0);
-    frame.light_count = 1; // whose radiance is not known here
+    frame.lights.resize(1); // whose radiance is not known here
     EXPECT_EQ(radiance_scale_for(frame), 1.0F);
-    frame.light_count = 0;
+    frame.lights.clear();
     frame.medium.ambient_radiance = glm::vec3(0.0F);
     EXPECT_EQ(radiance_scale_for(frame), 1.0F);
 

@@ -71,7 +71,6 @@ TEST_F(AgainstReference, LightsInHeightFog) {
                      .intensity_type = {80.0F, 60.0F, 40.0F, 1.0F},
                      .direction_radius = glm::vec4(glm::normalize(glm::vec3(-0.3F, -1.0F, 0.1F)), 0.02F),
                      .cone = {scale, -std::cos(0.9F) * scale, 0.0F, 0.0F}}};
-    scene.inputs.light_count = 1;
 
     const Result result = render(scene);
     const reference::ImageSize size{scene.image.x, scene.image.y};
