@@ -160,7 +160,7 @@ std::vector<glm::vec4> ParticlesDrawTest::draw(const std::vector<ParticleEmitter
     }
     if (!picture.lights.empty()) {
         surroundings.lights = engine::SceneLights{
-            import(graph, "lights", std::span<const gpu::GpuLight>(picture.lights)), light.light_count};
+            import(graph, "lights", std::span<const gpu::GpuLight>(picture.lights)), picture.lights};
     }
     rg::PassBuilder pass = graph.add_pass("transparents", rg::PassKind::graphics);
     pass.modifies(color, rg::Access::color_attachment).reads(depth, rg::Access::depth_attachment);
