@@ -122,13 +122,14 @@ struct Dependency {
     BufferRange buffer_range = {};
     VkPipelineStageFlags2 src_stages = 0;
     VkAccessFlags2 src_access = 0;
-    VkPipelineStageFlags2 local_stages = 0; ///< the part of src_stages that ran on the consumer's own queue
+    VkPipelineStageFlags2 local_stages = 0; ///< the part of src_stages that no wait covers: of the consumer's own queue
     VkAccessFlags2 local_access = 0;
     VkPipelineStageFlags2 dst_stages = 0;
     VkAccessFlags2 dst_access = 0;
     VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< equal to new_layout where none is needed
     VkImageLayout new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    std::uint32_t src_queue = 0; ///< logical queue; differs from dst_queue when any producer ran elsewhere
+    std::uint32_t src_queue =
+        0; ///< logical queue; differs from dst_queue where a wait for that queue covers a producer
     std::uint32_t dst_queue = 0;
     std::uint32_t src_family = VK_QUEUE_FAMILY_IGNORED; ///< set when transfers_ownership
     std::uint32_t dst_family = VK_QUEUE_FAMILY_IGNORED;

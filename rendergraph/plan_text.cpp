@@ -118,7 +118,7 @@ std::string describe(const GraphDesc& graph, const Dependency& d) {
         text += ", " + layout_name(d.old_layout) + " -> " + layout_name(d.new_layout);
     }
     if (d.src_queue != d.dst_queue) {
-        text += d.transfers_ownership ? ", ownership between families" : ", across queues";
+        text += d.transfers_ownership ? ", ownership between families" : ", through another queue's semaphore";
     }
     return text;
 }

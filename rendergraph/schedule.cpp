@@ -220,6 +220,7 @@ void derive_waits(const Scratch<SlotEdge>& edges, Schedule& schedule) {
     const std::uint32_t queues = schedule.queue_count;
     const auto count = static_cast<std::uint32_t>(schedule.order.size());
     schedule.clocks.assign(std::size_t{count} * queues, 0);
+    schedule.returns.resize(count);
     Scratch<std::uint32_t> last_on_queue(queues, none);
     Scratch<std::uint32_t> latest(queues);
     for (std::uint32_t slot = 0; slot < count; ++slot) {
@@ -227,6 +228,7 @@ void derive_waits(const Scratch<SlotEdge>& edges, Schedule& schedule) {
         std::uint32_t* clock = schedule.clocks.data() + std::size_t{slot} * queues;
         if (last_on_queue[own] != none) {
             std::copy_n(schedule.clocks.data() + std::size_t{last_on_queue[own]} * queues, queues, clock);
+            schedule.returns[slot] = schedule.returns[last_on_queue[own]];
         }
         // The latest producer of each other queue that is not already in the past.
         latest.assign(queues, none);
@@ -250,6 +252,9 @@ void derive_waits(const Scratch<SlotEdge>& edges, Schedule& schedule) {
         for (std::uint32_t q = 0; q < queues; ++q) {
             if (latest[q] != none) {
                 const std::uint32_t* other = schedule.clocks.data() + std::size_t{latest[q]} * queues;
+                if (other[own] > schedule.returns[slot].passes) {
+                    schedule.returns[slot] = {other[own], q};
+                }
                 for (std::uint32_t k = 0; k < queues; ++k) {
                     clock[k] = std::max(clock[k], other[k]);
                 }

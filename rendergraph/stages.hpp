@@ -130,6 +130,12 @@ struct QueueWait {
     std::uint32_t slot = 0;     ///< the waiting pass
     std::uint32_t producer = 0; ///< slot waited for
 };
+/// How far a queue's own work has come back to it: another queue waited for it, and it for that queue. The semaphores
+/// on the way cover execution and memory, so that no barrier is needed between that work and what follows.
+struct Return {
+    std::uint32_t passes = 0;  ///< the first so many passes of the queue
+    std::uint32_t from = none; ///< the queue waited for; `none` if `passes` is 0
+};
 struct Schedule {
     Scratch<std::uint32_t> order;    ///< kept passes in submission order
     Scratch<std::uint32_t> slot_of;  ///< by pass, `none` if culled
@@ -141,6 +147,7 @@ struct Schedule {
     Scratch<bool> concurrent;         ///< by resource: shared by families at once
     Scratch<QueueWait> waits;         ///< transitively reduced, in slot order
     Scratch<std::uint32_t> clocks;    ///< slots x queues: passes of each queue that happen before or at the slot
+    Scratch<Return> returns;          ///< by slot
     std::uint32_t queue_count = 1;
 
     [[nodiscard]] bool happens_before(std::uint32_t slot_a, std::uint32_t slot_b) const {

@@ -248,7 +248,9 @@ private:
                 d.dst_access |= use->scope.access;
             }
         }
-        add_sources(d, before, consumer.queue);
+        // A transition wants its sources named; everything else that came back with a wait is in the past already.
+        add_sources(d, before, consumer.queue,
+                    transition || full_barriers_ ? Return{} : schedule_.returns[consumer.slot]);
         d.new_layout = group.layout;
         d.old_layout = !transition                         ? group.layout
                        : group.discards || !before.content ? VK_IMAGE_LAYOUT_UNDEFINED
@@ -265,7 +267,7 @@ private:
         return made;
     }
 
-    void add_sources(Dependency& d, const Before& before, std::uint32_t consumer_queue) const {
+    void add_sources(Dependency& d, const Before& before, std::uint32_t consumer_queue, const Return& returned) const {
         // What the host did on another queue reaches this one through a semaphore, which all commands here chain to.
         const bool nameable = queue_has(topology_.queues[consumer_queue].capabilities, before.host_stages);
         d.src_stages = nameable ? before.host_stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -277,11 +279,12 @@ private:
             const VkAccessFlags2 written = use->writes ? use->scope.access & any_write : VkAccessFlags2{0};
             d.src_stages |= use->scope.stages;
             d.src_access |= written;
-            if (use->queue == consumer_queue) {
+            const bool own = use->queue == consumer_queue;
+            if (own && schedule_.position[use->slot] >= returned.passes) {
                 d.local_stages |= use->scope.stages;
                 d.local_access |= written;
             } else {
-                d.src_queue = use->queue;
+                d.src_queue = own ? returned.from : use->queue;
             }
             if (d.producer == none || use->slot >= last_slot) {
                 last_slot = use->slot;
@@ -370,7 +373,7 @@ private:
         d.resource = resource;
         d.hazard = hazard;
         d.src_queue = d.dst_queue = last.queue;
-        add_sources(d, before, last.queue);
+        add_sources(d, before, last.queue, {});
         d.src_queue = last.queue; // the others are ordered before the last use
         d.dst_stages = stages;
         d.dst_access = access;

@@ -139,6 +139,40 @@ TEST(Compile, AWaitThatAnotherImpliesIsDropped) {
     EXPECT_EQ(compiled(declared.desc, two_queues()).statistics.wait_count, 1U);
 }
 
+/// A graphics pass, an async one after it, and a graphics pass after both.
+TEST(Compile, WhatCameBackThroughAnotherQueueNeedsNoBarrier) {
+    GraphBuilder graph;
+    Buffer data = graph.create_buffer("data", {.size_bytes = 64});
+    Buffer more = graph.create_buffer("more", {.size_bytes = 64});
+    Buffer out = graph.import_buffer("out", {.size_bytes = 64}, {.has_final = true});
+    graph.add_pass("first", PassKind::compute).writes(data, Access::storage_compute).on_queue(QueueWish::graphics);
+    graph.add_pass("beside", PassKind::compute)
+        .reads(data, Access::storage_compute)
+        .writes(more, Access::storage_compute)
+        .on_queue(QueueWish::async_compute);
+    graph.add_pass("last", PassKind::compute)
+        .reads(data, Access::storage_compute)
+        .reads(more, Access::storage_compute)
+        .writes(out, Access::storage_compute)
+        .on_queue(QueueWish::graphics);
+    const DeclaredGraph declared = graph.finish();
+    for (const bool full_barriers : {false, true}) {
+        const Plan plan = compiled(declared.desc, two_queues(), {.full_barriers = full_barriers});
+        const PlannedPass& last = plan.passes[place_of(declared.desc, plan, "last")];
+        std::uint32_t of_data = 0;
+        for (std::uint32_t i = last.first_barrier; i < last.first_barrier + last.barrier_count; ++i) {
+            const Dependency& d = plan.dependencies[i];
+            if (d.resource == data.resource) {
+                ++of_data;
+                EXPECT_EQ(d.local_stages == 0, !full_barriers) << describe(declared.desc, d);
+                EXPECT_EQ(d.src_queue, full_barriers ? 0U : 1U); // the queue whose semaphore brings it
+                EXPECT_NE(d.src_stages, 0U);                     // whole, for queues that are folded onto one
+            }
+        }
+        EXPECT_EQ(of_data, 1U);
+    }
+}
+
 TEST(Compile, ReadsAreMergedIntoOneDependency) {
     GraphBuilder graph;
     Image image = graph.create_image("image", color_image());
