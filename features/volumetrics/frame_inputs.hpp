@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "features/volumetrics/settings.hpp"
@@ -33,6 +34,7 @@ struct FrameInputs {
     Medium medium;
     Settings settings;
     Camera camera;
+    glm::uvec2 image_size{0};  ///< pixels; another size than the frame before's begins anew
     std::optional<Sun> sun;
     std::vector<gpu::GpuLight> lights; ///< what the buffer given to declare_frame_begin holds, in the same order
     double time_s = 0.0;               ///< moves the noise with its wind

@@ -247,6 +247,7 @@ gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_
 FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters& parameters) {
     return {.camera = frame.camera,
             .medium = frame.medium,
+            .image_size = frame.image_size,
             .sun = frame.sun,
             .lights = frame.lights,
             .volume = parameters.volume,
@@ -255,7 +256,7 @@ FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters&
 }
 
 bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
-    if (!before || frame.cut || before->storage != frame.settings.storage) {
+    if (!before || frame.cut || before->storage != frame.settings.storage || before->image_size != frame.image_size) {
         return true;
     }
     // The same bits in every member but the radiance scale, which rescales history exactly.

@@ -16,6 +16,7 @@ inline constexpr glm::uvec3 cluster_block{8, 8, 2};
 struct FrameMemory {
     Camera camera;
     Medium medium;
+    glm::uvec2 image_size{0};
     std::optional<Sun> sun;
     std::vector<gpu::GpuLight> lights; ///< in the render space of `camera`
     gpu::ScatteringVolume volume;
@@ -35,8 +36,8 @@ struct FrameMemory {
 [[nodiscard]] gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_count,
                                                 const gpu::DepthLaw& law);
 
-/// True when the frame must not use the one before: there is none, the host cut, or grid, range or field of view
-/// differ.
+/// True when the frame must not use the one before: there is none, the host cut, or grid, range, field of view or size of
+/// the image differ.
 [[nodiscard]] bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& before);
 
 /// True when view and place are those of the frame before.

@@ -64,6 +64,7 @@ void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& black
     inputs.medium = fog_.medium;
     inputs.settings = fog_.settings;
     inputs.camera = {view.view_from_render, view.clip_from_view, view.origin_m};
+    inputs.image_size = {view.size.width, view.size.height};
     if (sun.illuminance_lux != glm::vec3(0.0F)) {
         inputs.sun = volumetrics::Sun{sun.direction, sun.illuminance_lux, sun.casts_shadows};
     }

@@ -155,6 +155,7 @@ Result FogTest::render(const Scene& scene) {
 
     FrameInputs inputs = scene.inputs;
     inputs.lights = scene.lights;
+    inputs.image_size = scene.image;
     inputs.frame_slot = executor().next_slot();
     EXPECT_TRUE(executor().wait_for_slot());
     FrameBeginResources begin;
