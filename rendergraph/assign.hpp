@@ -12,9 +12,16 @@ namespace tyndall::rg::stages {
 /// Bits of logical queues; the first 32 queues of a topology are enough for anybody.
 using QueueMask = std::uint32_t;
 inline constexpr std::uint32_t most_queues = 32;
-/// Without counting bits, which is a library call where the target may lack the instruction.
+// Masks have one or two bits, and std::popcount is a library call where the target may lack the instruction.
 [[nodiscard]] constexpr bool is_one_queue(QueueMask queues) {
     return queues != 0 && (queues & (queues - 1)) == 0;
+}
+[[nodiscard]] constexpr std::int64_t count_queues(QueueMask queues) {
+    std::int64_t count = 0;
+    for (; queues != 0; queues &= queues - 1) {
+        ++count;
+    }
+    return count;
 }
 
 /// By pass: the queues that it may run on. A pass with one queue only is not free.

@@ -109,16 +109,16 @@ Scratch<std::uint32_t> descending_by(std::span<const Block> blocks, Key&& key) {
     return order;
 }
 
-/// Tries the other orders until `best` has nothing to spare over `bound_bytes`.
+/// Tries the other orders until `best` needs no more than `enough_bytes`.
 void improve(std::span<const Block> blocks, const Conflicts& conflicts, Scratch<std::uint32_t> by_size,
-             VkDeviceSize bound_bytes, Effort effort, Packing& best) {
+             VkDeviceSize enough_bytes, Effort effort, Packing& best) {
     const auto find_lowest = [](std::span<const Extent> taken, const Block& block, VkDeviceSize /*heap_bytes*/) {
         return lowest_gap(taken, block);
     };
     const auto life = [](const Block& block) { return block.last_slot - block.first_slot + 1; };
     Packing other = best;
     const auto try_order = [&](Scratch<std::uint32_t> order, std::size_t rounds) {
-        for (std::size_t round = 0; round < rounds && best.total_bytes > bound_bytes; ++round) {
+        for (std::size_t round = 0; round < rounds && best.total_bytes > enough_bytes; ++round) {
             const std::size_t end = pack_in_order(blocks, conflicts, order, find_lowest, best.total_bytes, other);
             if (end == order.size()) {
                 std::swap(best, other);
@@ -166,7 +166,9 @@ Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uin
     VkDeviceSize bound_bytes = live_bytes;
     if (best.total_bytes > bound_bytes) {
         bound_bytes = std::max(bound_bytes, exclusive_bytes(blocks, conflicts, heap_count));
-        improve(blocks, conflicts, std::move(by_size), bound_bytes, effort, best);
+        // A frame does not wait for the last few percent: the refined plan that follows has them.
+        const VkDeviceSize enough_bytes = effort == Effort::thorough ? bound_bytes : bound_bytes + bound_bytes / 16;
+        improve(blocks, conflicts, std::move(by_size), enough_bytes, effort, best);
     }
     best.bound_bytes = bound_bytes;
     return best;

@@ -82,14 +82,13 @@ Urgency urgency_of(const Work& work, const Costs& costs) {
     for (auto item = static_cast<std::uint32_t>(work.pass.size()); item-- > 0;) {
         rank[item] += work.duration_ns[item];
         const QueueMask here = work.allowed[item];
+        const std::int64_t here_count = count_queues(here);
         for (std::uint32_t edge = work.first_in[item]; edge < work.first_in[item + 1]; ++edge) {
             // The mean over all pairs of queues, of which those with one queue for both cost nothing.
             const QueueMask there = work.allowed[work.in[edge]];
-            std::int64_t mean = 0;
-            if (here != there || !is_one_queue(here)) {
-                const int pairs = std::popcount(here) * std::popcount(there);
-                mean = cross_ns * (pairs - std::popcount(here & there)) / pairs;
-            }
+            const std::int64_t pairs = here_count * count_queues(there);
+            const std::int64_t mean =
+                pairs == 1 ? (here == there ? 0 : cross_ns) : cross_ns * (pairs - count_queues(here & there)) / pairs;
             std::int64_t& before = rank[work.in[edge]];
             before = std::max(before, rank[item] + mean);
         }
@@ -113,7 +112,7 @@ std::int64_t lower_bound_ns(const Work& work, const Urgency& urgency, const Cost
         usable |= work.allowed[item];
         total += work.duration_ns[item];
     }
-    const std::int64_t queues = std::popcount(usable);
+    const std::int64_t queues = count_queues(usable);
     if (queues < 2 || slowdown >= queues * permille) {
         return total; // even with all queues busy no more is done than by one
     }

@@ -268,6 +268,12 @@ void derive_waits(const Scratch<SlotEdge>& edges, Schedule& schedule) {
 } // namespace
 
 void CellUses::sort(const ResourceCells& cells, std::span<const Use> uses) {
+    if (cells.whole) {
+        first_ = {0, static_cast<std::uint32_t>(uses.size())};
+        uses_.resize(uses.size());
+        std::transform(uses.begin(), uses.end(), uses_.begin(), [](const Use& use) { return &use; });
+        return;
+    }
     first_.assign(cells.count() + 1, 0);
     for (const Use& use : uses) {
         for_each_cell(cells, use.cells, [&](std::uint32_t cell) { ++first_[cell + 1]; });

@@ -70,7 +70,7 @@ private:
         std::uint64_t combinations = 1;
         constexpr std::uint64_t few = 1'024;
         for (std::uint32_t item = 0; item < work_.pass.size(); ++item) {
-            const auto choices = static_cast<std::uint64_t>(std::popcount(work_.allowed[item]));
+            const auto choices = static_cast<std::uint64_t>(count_queues(work_.allowed[item]));
             if (choices > 1) {
                 free.push_back(item);
                 combinations = std::min(combinations * choices, few + 1);
@@ -173,7 +173,7 @@ private:
     }
     /// What is placed, and the load that must still follow; the weights are those of lower_bound_ns.
     [[nodiscard]] std::int64_t load_bound() const {
-        const std::int64_t queues = std::popcount(usable_);
+        const std::int64_t queues = count_queues(usable_);
         std::int64_t bound = 0;
         std::int64_t busy = remaining_;
         for (std::uint32_t q = 0; q < work_.queue_count; ++q) {
