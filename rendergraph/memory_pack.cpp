@@ -16,7 +16,9 @@ struct Extent {
 
 constexpr VkDeviceSize unplaced = ~VkDeviceSize{0};
 constexpr std::size_t most_exact_blocks = 7;
-constexpr std::size_t most_steps = 8192; ///< blocks placed on the way to a better packing, from each order
+// Blocks placed on the way to a better packing, from each order. A frame of thousands of resources takes its first one.
+constexpr std::size_t most_steps = 8192;
+constexpr std::size_t most_quick_steps = 2048;
 
 /// The lowest offset at which the block overlaps none of `taken`.
 VkDeviceSize lowest_gap(std::span<const Extent> taken, const Block& block) {
@@ -136,10 +138,10 @@ void improve(std::span<const Block> blocks, const Conflicts& conflicts, Scratch<
         } while (std::next_permutation(order.begin(), order.end()));
         return;
     }
-    const std::size_t rounds =
-        effort == Effort::thorough
-            ? std::clamp<std::size_t>(most_steps / std::max<std::size_t>(blocks.size(), 1), 2, 64)
-            : 2;
+    const std::size_t steps = effort == Effort::thorough ? most_steps : most_quick_steps;
+    const std::size_t least = effort == Effort::thorough ? 2 : 0;
+    const std::size_t most = effort == Effort::thorough ? 64 : 2;
+    const std::size_t rounds = std::clamp(steps / std::max<std::size_t>(blocks.size(), 1), least, most);
     try_order(descending_by(blocks, life), rounds);
     try_order(descending_by(blocks, [&](const Block& block) { return block.size_bytes * life(block); }), rounds);
     try_order(as_they_come(blocks.size()), rounds);
@@ -167,7 +169,7 @@ Packing pack(std::span<const Block> blocks, const Conflicts& conflicts, std::uin
     if (best.total_bytes > bound_bytes) {
         bound_bytes = std::max(bound_bytes, exclusive_bytes(blocks, conflicts, heap_count));
         // A frame does not wait for the last few percent: the refined plan that follows has them.
-        const VkDeviceSize enough_bytes = effort == Effort::thorough ? bound_bytes : bound_bytes + bound_bytes / 16;
+        const VkDeviceSize enough_bytes = effort == Effort::thorough ? bound_bytes : bound_bytes + bound_bytes / 8;
         improve(blocks, conflicts, std::move(by_size), enough_bytes, effort, best);
     }
     best.bound_bytes = bound_bytes;

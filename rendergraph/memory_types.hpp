@@ -61,7 +61,7 @@ struct Packing {
 /// gap that fits; then each into the lowest gap, by length of life, by size times that, both descending, by first slot,
 /// and by size again. From each of these last four the block with which the best total is reached goes to the front and
 /// the order is tried again, once or, with thorough effort, a bounded number of times. Up to seven blocks thorough
-/// effort tries all orders, which is optimal. Ends, quick effort a sixteenth above it, at the larger of `live_bytes`, a
+/// effort tries all orders, which is optimal. Ends, quick effort an eighth above it, at the larger of `live_bytes`, a
 /// bound that the caller knows, and exclusive_bytes, which is only sought where the first packing is above the other.
 /// `kept`, if given, is a valid packing that stays unless another is smaller. O(orders x conflicts x log), the number
 /// of tries falling with the number of blocks.
