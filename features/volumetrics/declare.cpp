@@ -175,7 +175,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     const GroupShape group = row_group(grid.width);
     // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
     const PhaseLobes phase = phase_of(inputs.medium);
-    const std::array<std::uint32_t, 9> constants{
+    const std::array<std::uint32_t, 10> constants{
         inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
         variant.sun_shadow ? graph.describe(frame->shadow_map)->layers : 0,
         is_perspective(inputs.camera),
@@ -185,6 +185,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         phase.count,
         packed_functions(phase),
         is_directed(inputs.medium),
+        frame->depth_curve,
     };
     const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
     if (!program) {
@@ -248,9 +249,9 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
     const Settings& settings = frame->inputs.settings;
     const GridSettings& grid = settings.grid;
     const GroupShape group = row_group(grid.width, 32); // few columns: small groups keep all cores busy
-    const auto program =
-        pipelines.compute(accumulation_shader(settings.storage, settings.error_estimate, frame->emission), group,
-                          std::array{static_cast<std::uint32_t>(settings.integrator)});
+    const auto program = pipelines.compute(
+        accumulation_shader(settings.storage, settings.error_estimate, frame->emission), group,
+        std::array{static_cast<std::uint32_t>(settings.integrator), std::uint32_t{frame->depth_curve}});
     if (!program) {
         frame->volume.reset();
         return tl::unexpected(program.error());

@@ -95,10 +95,13 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
     const GridSettings& grid = frame->inputs.settings.grid;
     const Medium& medium = frame->inputs.medium;
     const glm::vec3 none(0.0F);
-    const std::array<std::uint32_t, 5> media{
+    const std::array<std::uint32_t, 6> media{
         medium.homogeneous.extinction_per_m > 0.0F || medium.homogeneous.emission_per_m != none,
-        medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none, medium.noise.amplitude > 0.0F,
-        is_perspective(frame->inputs.camera), frame->parameters.frame.z > 0};
+        medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none,
+        medium.noise.amplitude > 0.0F,
+        is_perspective(frame->inputs.camera),
+        frame->parameters.frame.z > 0,
+        frame->depth_curve};
     auto density = pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission),
                                      row_group(grid.width), media);
     if (!density) {
@@ -169,6 +172,7 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
     frame.parameters = volumetric_parameters(inputs, state.before);
     const auto light_count = static_cast<std::uint32_t>(inputs.lights.size());
     frame.cluster_parameters = light_clusters(inputs.settings.grid, light_count, frame.parameters.volume.law);
+    frame.depth_curve = inputs.settings.grid.law == DepthLawKind::curve;
     frame.emission = emission_bound(inputs.medium) > 0.0F;
     frame.sun_shadow = shines(inputs) && inputs.sun->casts_shadows;
     if (light_count > 0) {

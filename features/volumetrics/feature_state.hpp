@@ -16,7 +16,8 @@ struct FrameState {
     bool cold = true;
     bool camera_stands = false; ///< since the frame before
     bool sun_shadow = false;
-    bool emission = false; ///< the medium emits somewhere
+    bool depth_curve = false; ///< the depth law is one
+    bool emission = false;    ///< the medium emits somewhere
     LocalLights lights = LocalLights::none;
     Program density_injection;
     Program light_clustering;

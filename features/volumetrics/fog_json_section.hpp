@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
@@ -112,6 +113,19 @@ public:
         float* parts[] = {&value.x, &value.y, &value.z, &value.w};
         for (std::size_t i = 0; i < 4; ++i) {
             *parts[i] = number((*json)[i], path_of(key) + "[" + std::to_string(i) + "]", *parts[i]);
+        }
+    }
+    void read_list(const char* key, std::vector<float>& values) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        if (!json->is_array()) {
+            complain(path_of(key), "must be an array of numbers");
+            return;
+        }
+        for (const Json& entry : *json) {
+            values.push_back(number(entry, path_of(key) + "[" + std::to_string(values.size()) + "]", 0.0F));
         }
     }
     void read_per_cascade(const char* key, std::array<float, 4>& value) {

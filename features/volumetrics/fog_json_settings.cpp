@@ -8,7 +8,17 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
         s.read("height", settings.grid.height);
         s.read("slices", settings.grid.slices);
         s.read("range_m", settings.grid.range_m);
+        s.read_list("curve_m", settings.grid.curve_m);
+        if (!settings.grid.curve_m.empty()) {
+            settings.grid.law = DepthLawKind::curve;
+            settings.grid.range_m = s.find("range_m") != nullptr ? settings.grid.range_m : settings.grid.curve_m.back();
+        }
         settings.grid.shape_m = 0.25F * settings.grid.range_m;
+        s.read("law", settings.grid.law,
+               {{"shaped", DepthLawKind::shaped}, {"linear", DepthLawKind::linear}, {"curve", DepthLawKind::curve}});
+        if (!settings.grid.curve_m.empty() && settings.grid.law != DepthLawKind::curve) {
+            s.complain("grid.law", "must be \"curve\" where grid.curve_m is given");
+        }
         s.read("shape_m", settings.grid.shape_m);
     });
     subsection(root, "shadow", error,

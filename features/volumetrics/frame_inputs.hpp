@@ -34,7 +34,7 @@ struct FrameInputs {
     Medium medium;
     Settings settings;
     Camera camera;
-    glm::uvec2 image_size{0};  ///< pixels; another size than the frame before's begins anew
+    glm::uvec2 image_size{0}; ///< pixels; another size than the frame before's begins anew
     std::optional<Sun> sun;
     std::vector<gpu::GpuLight> lights; ///< what the buffer given to declare_frame_begin holds, in the same order
     double time_s = 0.0;               ///< moves the noise with its wind

@@ -14,9 +14,38 @@
 namespace tyndall::volumetrics {
 namespace {
 
+/// s of the law that the shaders compute, m. The shaped law's formula loses digits where s is far beyond the range, and
+/// is linear there anyway.
+double effective_shape_m(const GridSettings& grid) {
+    const double range_m = grid.range_m;
+    const bool linear = grid.law != DepthLawKind::shaped || grid.shape_m > 100.0F * grid.range_m;
+    return linear ? std::exp2(20.0) * range_m : static_cast<double>(grid.shape_m);
+}
+
 gpu::DepthLaw depth_law(const GridSettings& grid) {
-    const double log_ratio = std::log1p(static_cast<double>(grid.range_m) / static_cast<double>(grid.shape_m));
-    return {glm::vec4(grid.range_m, grid.shape_m, log_ratio, 1.0 / log_ratio)};
+    const double range_m = grid.range_m;
+    const double shape_m = effective_shape_m(grid);
+    const double log_ratio = std::log1p(range_m / shape_m);
+    gpu::DepthLaw law{};
+    law.range_shape = glm::vec4(range_m, shape_m, log_ratio, 1.0 / log_ratio);
+    std::vector<double> ends{range_m};
+    if (grid.law == DepthLawKind::curve) {
+        ends.assign(grid.curve_m.begin(), grid.curve_m.end());
+    }
+    const auto count = static_cast<double>(ends.size());
+    law.pieces = glm::vec4(count, 1.0 / count, 0.0, 0.0);
+    law.first_0 = glm::vec4(2.0F);
+    law.first_4 = glm::vec4(2.0F);
+    double first = 0.0;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const int part = static_cast<int>(i % 4);
+        const double end = i + 1 < ends.size() ? std::log1p(ends[i] / shape_m) / log_ratio : 1.0;
+        (i < 4 ? law.first_0 : law.first_4)[part] = static_cast<float>(first);
+        (i < 4 ? law.step_0 : law.step_4)[part] = static_cast<float>(end - first);
+        (i < 4 ? law.inverse_0 : law.inverse_4)[part] = static_cast<float>(1.0 / (end - first));
+        first = end;
+    }
+    return law;
 }
 
 float fraction(double value) {
@@ -197,11 +226,11 @@ gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& 
     volume.law = depth_law(grid);
     volume.grid = glm::vec4(grid.width, grid.height, grid.slices, 0.0F);
     // z at t = i / N is s (e^(i y) - 1).
-    const double shape_m = static_cast<double>(grid.shape_m);
+    const double shape_m = effective_shape_m(grid);
     const double y = std::log1p(static_cast<double>(grid.range_m) / shape_m) / grid.slices;
     volume.slice = glm::vec4(shape_m * std::expm1(y), shape_m * std::expm1(0.5 * y), std::exp(y), std::exp(-y));
     volume.area = glm::vec4(1.0F, 1.0F, 0.0F, 0.0F);
-    volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, y / std::expm1(y), y);
+    volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, std::expm1(y), 0.0F);
     return volume;
 }
 

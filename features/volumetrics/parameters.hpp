@@ -36,8 +36,8 @@ struct FrameMemory {
 [[nodiscard]] gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_count,
                                                 const gpu::DepthLaw& law);
 
-/// True when the frame must not use the one before: there is none, the host cut, or grid, range, field of view or size of
-/// the image differ.
+/// True when the frame must not use the one before: there is none, the host cut, or grid, range, field of view or size
+/// of the image differ.
 [[nodiscard]] bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& before);
 
 /// True when view and place are those of the frame before.

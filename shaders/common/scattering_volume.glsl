@@ -36,17 +36,10 @@ vec2 texture_uv(ScatteringVolume volume, vec2 uv) {
 
 // How density changes over a slice of optical depth x, from that of a neighbour of optical depth x_neighbour at
 // `direction` 1 (behind) or -1 (in front): half the relative change, positive where density falls away from the eye,
-// limited so that optical depth stays monotone.
-float density_tilt(ScatteringVolume volume, float x, float x_neighbour, float direction) {
-    float length_ratio = direction > 0.0 ? volume.slice.z : volume.slice.w; // of the neighbour to the slice
+// limited so that optical depth stays monotone. The neighbour is `length_ratio` times as long as the slice.
+float density_tilt(float x, float x_neighbour, float length_ratio, float direction) {
     float slope = direction * (x_neighbour / length_ratio - x) * 2.0 / (1.0 + length_ratio);
     return x > 0.0 ? clamp(-0.5 * slope / x, -0.9, 0.9) : 0.0;
-}
-
-// (e^y - 1) / y for y in [0, 1.2], by its Taylor series; the first term left out is 1.4e-5 of it at the upper end.
-float growth(float y) {
-    return 1.0 + y * (1.0 / 2.0 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0 + y * (1.0 / 720.0 +
-           y * (1.0 / 5040.0 + y * (1.0 / 40320.0)))))));
 }
 
 // Radiance scattered toward the eye in front of a point, and the transmittance from it to the eye. `depth_m` is the
@@ -63,19 +56,22 @@ void scattering_lookup(ScatteringVolume volume, sampler2DArray accumulated, vec2
     float slices = volume.grid.z;
     float position = min(t_from_depth(volume.law, depth_m), 1.0) * slices;
     float k = min(floor(position), slices - 1.0);
-    float u = position - k;
-    float f = u * growth(u * volume.scale.w) * volume.scale.z; // (z - z_k) / (z_{k+1} - z_k)
+    float near_m = depth_from_t(volume.law, k / slices);
+    float length_m = depth_from_t(volume.law, (k + 1.0) / slices) - near_m;
+    float f = clamp((depth_m - near_m) / length_m, 0.0, 1.0);
 
     vec2 p = texture_uv(volume, uv);
     float direction = k > 0.0 ? -1.0 : 1.0;
-    float outer = k > 0.0 ? k - 1.0 : min(2.0, slices);
+    float outer = k > 0.0 ? k - 1.0 : 2.0;
+    float outer_m = depth_from_t(volume.law, outer / slices);
+    float neighbour_m = k > 0.0 ? near_m - outer_m : outer_m - near_m - length_m;
     vec4 near = textureLod(accumulated, vec3(p, k), 0.0);
     vec4 far = textureLod(accumulated, vec3(p, k + 1.0), 0.0);
     float tau_outer = textureLod(accumulated, vec3(p, outer), 0.0).a;
 
     float x = max(far.a - near.a, 0.0);
     float x_neighbour = max(k > 0.0 ? near.a - tau_outer : tau_outer - far.a, 0.0);
-    float g = f + density_tilt(volume, x, x_neighbour, direction) * f * (1.0 - f);
+    float g = f + density_tilt(x, x_neighbour, neighbour_m / length_m, direction) * f * (1.0 - f);
     radiance = (near.rgb + (far.rgb - near.rgb) * (g * phi1(g * x) / phi1(x))) * volume.scale.y;
     transmittance = vec3(exp(-(near.a + g * x)));
 

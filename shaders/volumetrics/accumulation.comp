@@ -12,6 +12,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+layout(constant_id = 4) const bool has_depth_curve = false;
+#define DEPTH_CURVE has_depth_curve
+
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/integrators.glsl"
 #include "volumetrics/interop.h"
@@ -46,6 +49,18 @@ vec3 source_of(ivec2 column, int k, vec3 scattering) {
     return source;
 }
 
+// The length of slice k + steps, where that of slice k is dt. A curve's slices, other than those of one law, do not all
+// grow by the same ratio.
+float length_after(int k, float steps, float dt) {
+    if (has_depth_curve) {
+        float near_m = boundary_depth(u.volume, float(k));
+        float next_m = boundary_depth(u.volume, float(k) + steps);
+        return dt * slice_depth(u.volume, float(k) + steps, next_m) / slice_depth(u.volume, float(k), near_m);
+    }
+    float ratio = steps < 0.0 ? u.volume.slice.w : u.volume.slice.z;
+    return dt * (abs(steps) > 1.0 ? ratio * ratio : ratio);
+}
+
 // Slice k of length dt; at the column's ends the density goes on as it begins.
 SliceNode slice_node(ivec2 column, int k, float dt) {
     int last = int(u.volume.grid.z) - 1;
@@ -56,7 +71,8 @@ SliceNode slice_node(ivec2 column, int k, float dt) {
     node.source = source_of(column, k, medium.rgb);
     node.extinction = medium.a;
     node.x = medium.a * dt;
-    node.middle = optical_depth_of_middle(before, medium.a, after, u.volume.slice.z, dt);
+    float ratio = has_depth_curve ? length_after(k, k < last ? 1.0 : -1.0, 1.0) : u.volume.slice.z;
+    node.middle = optical_depth_of_middle(before, medium.a, after, k < last || !has_depth_curve ? ratio : 1.0 / ratio, dt);
     return node;
 }
 
@@ -65,14 +81,13 @@ SliceNode slice_node(ivec2 column, int k, float dt) {
 vec3 parabolic_source(ivec2 column, int k, float dt, SliceNode before, SliceNode here, SliceNode after,
                       float attenuation) {
     int last = int(u.volume.grid.z) - 1;
-    float ratio = u.volume.slice.z;
     float a = before.middle - before.x;
     float c = here.x + after.middle;
     if (k == 0) {
-        before = slice_node(column, 2, dt * ratio * ratio);
+        before = slice_node(column, 2, length_after(k, 2.0, dt));
         a = here.x + after.x + before.middle;
     } else if (k == last) {
-        after = slice_node(column, last - 2, dt / (ratio * ratio));
+        after = slice_node(column, last - 2, length_after(k, -2.0, dt));
         c = after.middle - after.x - before.x;
     }
     return mean_source(here, before, a, after, c, attenuation);
@@ -87,8 +102,7 @@ void main() {
     vec2 uv = uv_of_column(u.volume, vec2(column));
     // Each slice is longer than the one before it by the same ratio, which is kept as its difference to 1: a product of
     // rounded ratios would drift.
-    float growth_of_slices = u.volume.scale.w / u.volume.scale.z;
-    float dt = u.volume.slice.x * column_stretch(u.volume, uv) * u.density_scale.y;
+    float dt = slice_depth(u.volume, 0.0, 0.0) * column_stretch(u.volume, uv) * u.density_scale.y;
     vec3 radiance = vec3(0.0);
     vec3 companion_radiance = vec3(0.0);
     float tau = 0.0;
@@ -108,7 +122,7 @@ void main() {
         if (needs_parabola) {
             SliceNode after = here;
             if (k + 1 < grid.z) {
-                after = slice_node(column, k + 1, dt * u.volume.slice.z);
+                after = slice_node(column, k + 1, length_after(k, 1.0, dt));
             }
             source = here.source;
             x = here.x;
@@ -131,7 +145,7 @@ void main() {
         tau += x;
         transmittance *= attenuation.across;
         imageStore(accumulated, ivec3(column, k + 1), storable(vec4(radiance, tau)));
-        dt += dt * growth_of_slices;
+        dt = has_depth_curve ? length_after(k, 1.0, dt) : dt + dt * u.volume.scale.z;
     }
 #if ESTIMATE
     imageStore(error_estimate, column, vec4(abs(radiance - companion_radiance), 0.0));

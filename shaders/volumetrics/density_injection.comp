@@ -4,6 +4,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+layout(constant_id = 8) const bool has_depth_curve = false;
+#define DEPTH_CURVE has_depth_curve
+
 #include "common/height_density.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
@@ -42,7 +45,7 @@ void main() {
     vec3 ray = u.ray_u.xyz * uv.x + u.ray_v.xyz * uv.y + u.ray_0.xyz;
     vec3 eye = is_perspective ? vec3(0.0) : u.eye_u.xyz * uv.x + u.eye_v.xyz * uv.y + u.eye_0.xyz;
     float near_m = boundary_depth(u.volume, float(froxel.z));
-    float far_m = near_m + slice_depth(u.volume, near_m);
+    float far_m = near_m + slice_depth(u.volume, float(froxel.z), near_m);
 
     vec4 medium = vec4(0.0);
     vec3 emission = vec3(0.0);

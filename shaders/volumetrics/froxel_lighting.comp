@@ -10,6 +10,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+layout(constant_id = 12) const bool has_depth_curve = false;
+#define DEPTH_CURVE has_depth_curve
+
 #include "common/lights.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
@@ -92,7 +95,8 @@ vec4 fetch_history(ivec3 froxel, float near_m) {
     if (camera_stands) {
         old = texelFetch(history, froxel, 0);
     } else {
-        vec3 now = view_position(u.volume, uv_of_column(u.volume, vec2(froxel.xy)), slice_middle(u.volume, near_m));
+        vec3 now = view_position(u.volume, uv_of_column(u.volume, vec2(froxel.xy)),
+                                 slice_middle(u.volume, float(froxel.z), near_m));
         vec3 before = (u.previous_view_from_view * vec4(now, 1.0)).xyz;
         vec2 uv = column_uv(u.volume, before.xy, -before.z);
         float t = t_from_depth(u.volume.law, -before.z);
@@ -136,7 +140,7 @@ void main() {
     vec3 place = u.jitter.w > 0.5 ? fract(unit_floats(bits) + u.jitter.xyz) : vec3(0.5);
     vec2 uv = uv_of_column(u.volume, vec2(froxel.xy) + place.xy - 0.5);
     float near_m = boundary_depth(u.volume, float(froxel.z));
-    float far_m = near_m + slice_depth(u.volume, near_m);
+    float far_m = near_m + slice_depth(u.volume, float(froxel.z), near_m);
     float depth_m = mix(near_m, far_m, place.z);
 
     vec3 ray = u.ray_u.xyz * uv.x + u.ray_v.xyz * uv.y + u.ray_0.xyz;

@@ -118,6 +118,18 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"grid": {"width": 0}})"), "grid.width must be between 2 and 1024, not 0.");
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 0}})").substr(0, 12), "grid.range_m");
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 10, "shape_m": 1e-4}})").substr(0, 12), "grid.shape_m");
+    EXPECT_EQ(refusal(R"({"grid": {"law": "log"}})"), "grid.law must be one of \"shaped\", \"linear\", \"curve\".");
+    EXPECT_EQ(refusal(R"({"grid": {"law": "curve"}})"),
+              "The number of grid.curve_m's depths must be between 1 and 8, not 0.");
+    EXPECT_EQ(refusal(R"({"grid": {"curve_m": [1, 2, 3, 4, 5, 6, 7, 8, 9]}})"),
+              "The number of grid.curve_m's depths must be between 1 and 8, not 9.");
+    EXPECT_EQ(refusal(R"({"grid": {"curve_m": [4, 2, 10]}})"),
+              "grid.curve_m[1] must be between 4.00001 and 10, not 2.");
+    EXPECT_EQ(refusal(R"({"grid": {"curve_m": [4, NaN, 10]}})").substr(0, 15), "grid.curve_m[1]");
+    EXPECT_EQ(refusal(R"({"grid": {"curve_m": [4, 8], "range_m": 10}})"),
+              "grid.curve_m[1] (the last, grid.range_m) must be between 10 and 10, not 8.");
+    EXPECT_EQ(refusal(R"({"grid": {"curve_m": [4], "law": "linear"}})"),
+              "grid.law must be \"curve\" where grid.curve_m is given.");
     EXPECT_EQ(refusal(R"({"shadow": {"esm_exponent": 0}})"), "shadow.esm_exponent must be between 1 and 1000, not 0.");
     EXPECT_EQ(refusal(R"({"visibility": {"taps": 0}})"), "visibility.taps must be between 1 and 64, not 0.");
     EXPECT_EQ(refusal(R"({"temporal": {"new_frame_weight": 0}})"),
