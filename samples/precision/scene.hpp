@@ -35,7 +35,8 @@ struct PrecisionScene {
     std::optional<reference::DirectionalLight> sun;
     std::vector<reference::Light> lights;
     reference::Surroundings surroundings;
-    std::size_t pixels = 0; ///< that the reference computes, at random; 0: all
+    std::size_t pixels = 0;  ///< that the reference computes, at random; 0: all
+    double tolerance = 1e-7; ///< of the reference, relative, a pixel each
 };
 
 /// What the truth may leave out, to tell which cause an error has.

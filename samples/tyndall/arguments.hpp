@@ -17,6 +17,8 @@ namespace tyndall::samples {
 struct Size {
     std::uint32_t width = 1280;
     std::uint32_t height = 720;
+
+    bool operator==(const Size&) const = default;
 };
 /// "1280x720"; each side 1 to 16384. The error is one sentence that names the option.
 [[nodiscard]] tl::expected<Size, std::string> parse_size(std::string_view text, std::string_view option = "--size");
@@ -81,17 +83,22 @@ struct PrecisionConfiguration {
     std::uint32_t slices = volumetrics::Settings{}.grid.slices;
     volumetrics::StorageFormat storage = volumetrics::Settings{}.storage;
     std::uint32_t cascade_texels = 1024; ///< of a side of the sun's shadow cascades
+
+    bool operator==(const PrecisionConfiguration&) const = default;
 };
 
-/// Every combination of the lists is measured.
+/// Every combination of the lists is measured; of one that is empty, the ladder's values or, without a sweep, what the
+/// scene itself asks for (samples/tyndall/precision_ladder.hpp).
 struct PrecisionArguments {
     std::string scene = "all";
     Size size{320, 180};
     std::uint32_t frames = 8; ///< the first and the last of them are judged
-    std::vector<volumetrics::Integrator> integrators{PrecisionConfiguration{}.integrator};
-    std::vector<volumetrics::SunVisibility> visibilities{PrecisionConfiguration{}.visibility};
-    std::vector<Size> grids{PrecisionConfiguration{}.grid};
-    std::vector<std::uint32_t> slices{PrecisionConfiguration{}.slices};
+    std::vector<volumetrics::Integrator> integrators;
+    std::vector<volumetrics::SunVisibility> visibilities;
+    std::vector<Size> grids;
+    std::vector<std::uint32_t> slices;
+    bool sweep = false;                          ///< measure every combination of the long ladder
+    bool quick = false;                          ///< of the short ladder
     std::optional<double> error;                 ///< choose the cheapest within this relative L2 error
     std::optional<double> budget_ms;             ///< choose the most exact that takes no longer, fog's passes
     bool causes = false;                         ///< measure too what removing one cause of error at a time leaves

@@ -86,6 +86,9 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, Pre
     command.add_option("--slices", precision.slices, "numbers of slices, a comma between them")
         ->check(CLI::Range(8U, 512U))
         ->delimiter(',');
+    command.add_flag("--sweep", precision.sweep,
+                     "measure every integrator, visibility, grid and number of slices of a long ladder; about an hour");
+    command.add_flag("--quick", precision.quick, "a sweep over a short ladder; minutes");
     command.add_flag("--causes", precision.causes,
                      "list what error is left when one cause at a time is removed from the first configuration");
     command.add_flag("--orders", precision.orders,

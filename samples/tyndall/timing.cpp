@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 namespace tyndall::samples {
-namespace {
 
 double median(std::vector<double> values) {
     if (values.empty()) {
@@ -17,8 +16,6 @@ double median(std::vector<double> values) {
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
-
-} // namespace
 
 void Timings::add_frame(const rg::GraphDesc& graph, std::span<const rg::PassTiming> passes) {
     double sum = 0.0;

@@ -10,6 +10,9 @@
 
 namespace tyndall::samples {
 
+/// The upper of two middle ones; 0 of none.
+[[nodiscard]] double median(std::vector<double> values);
+
 /// Collects a frame's timestamps at a time; the same graph is expected in every frame.
 class Timings {
 public:

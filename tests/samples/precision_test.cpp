@@ -174,8 +174,8 @@ TEST(Precision, ChoosesAndRunsTheChoice) {
     EXPECT_NE(run.output.find("slab, the most exact within 1e-06 ms: unreachable"), std::string::npos) << run.output;
     // Euler's error in a slab is that of its slices and of the integrator.
     const auto left = [&](const std::string& cause) {
-        const std::size_t at = run.output.find("  " + cause + " ");
-        return at == std::string::npos ? -1.0 : std::strtod(run.output.c_str() + at + 34, nullptr);
+        const std::size_t at = run.output.find("slab          " + cause + " ");
+        return at == std::string::npos ? -1.0 : std::strtod(run.output.c_str() + at + 46, nullptr);
     };
     EXPECT_GT(left("none removed"), 0.5);
     EXPECT_LT(left("4 times the slices"), 0.5 * left("none removed"));
