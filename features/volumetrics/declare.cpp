@@ -39,6 +39,12 @@ rg::ImageDesc froxel_image(const Settings& settings) {
             .type = VK_IMAGE_TYPE_3D};
 }
 
+/// The specialization constant `light_changes` of froxel_lighting.comp: some processors run loops of no iteration once.
+std::uint32_t light_change_kind(const gpu::VolumetricParameters& u) {
+    const bool anything = u.temporal.w > 0.0F || u.phase.x * u.motion.x > 0.0F;
+    return u.frame.w > 0 ? 2 : anything ? 1 : 0;
+}
+
 constexpr rg::ViewDesc array_view{.range = {}, .type = VK_IMAGE_VIEW_TYPE_2D_ARRAY};
 constexpr rg::ViewDesc depth_array_view{.range = {.aspects = VK_IMAGE_ASPECT_DEPTH_BIT},
                                         .type = VK_IMAGE_VIEW_TYPE_2D_ARRAY};
@@ -175,7 +181,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     const GroupShape group = row_group(grid.width);
     // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
     const PhaseLobes phase = phase_of(inputs.medium);
-    const std::array<std::uint32_t, 10> constants{
+    const std::array<std::uint32_t, 11> constants{
         inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
         variant.sun_shadow ? graph.describe(frame->shadow_map)->layers : 0,
         is_perspective(inputs.camera),
@@ -186,6 +192,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         packed_functions(phase),
         is_directed(inputs.medium),
         frame->depth_curve,
+        variant.history ? light_change_kind(frame->parameters) : 0U,
     };
     const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
     if (!program) {

@@ -29,6 +29,9 @@ layout(constant_id = 7) const uint sun_visibility = 2;    // of slice_visibility
 layout(constant_id = 8) const uint visibility_taps = 1;   // 9 and 10: phase.glsl
 layout(constant_id = 11) const bool has_directed_ambient = false;
 
+layout(constant_id = 13) const uint light_changes = 2; // 0: since the frame before nothing; 1: sun, ambient or the
+                                                       // direction of view; 2: local lights, too
+
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
 
@@ -115,6 +118,9 @@ vec4 fetch_history(ivec3 froxel, float near_m) {
 // the direction of view with the camera's way, local lights where they reach. Its diagonal and a half hold the parts of
 // its neighbours that history is filtered from.
 float change_since(RaySegment segment, float depth_m) {
+    if (light_changes == 0u) {
+        return 0.0;
+    }
     float change = u.temporal.w;
     if (!camera_stands) {
         float distance_m = length(segment.position);
@@ -122,7 +128,7 @@ float change_since(RaySegment segment, float depth_m) {
     }
     vec2 cell_m = (u.volume.slope.xy * depth_m + u.volume.origin.xy) / (u.volume.grid.xy - 1.0);
     float reach_m = 1.5 * length(vec3(cell_m, segment.behind_m + segment.ahead_m));
-    for (uint i = 0u; i < u.frame.w; ++i) {
+    for (uint i = 0u; light_changes == 2u && i < u.frame.w; ++i) {
         change += light_change(u.changed_lights[2u * i], u.changed_lights[2u * i + 1u], segment.position, reach_m,
                                u.phase.x);
     }
