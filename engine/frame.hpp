@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,12 @@
 
 namespace tyndall::engine {
 
+/// View depths between which all surfaces in view lie, as far as their bounds tell.
+struct DepthSpan {
+    double nearest_m = 0.0; ///< 0 or more
+    double farthest_m = 0.0;
+};
+
 /// The view of a frame. Render space has world axes, metres and its origin at `origin_m`, the camera's place; view
 /// space looks along -Z with +Y up; "depth" is positive view depth -z.
 struct FrameView {
@@ -24,8 +31,9 @@ struct FrameView {
     VkExtent2D size = {1, 1};
     double time_s = 0.0;
     std::uint64_t frame_index = 0;
-    std::uint32_t frame_slot = 0; ///< in [0, frames in flight): Executor::next_slot
-    bool cut = false;             ///< nothing of the frames before may show in this one
+    std::uint32_t frame_slot = 0;             ///< in [0, frames in flight): Executor::next_slot
+    bool cut = false;                         ///< nothing of the frames before may show in this one
+    std::optional<DepthSpan> visible_depth_m; ///< empty where no surface is in view
 };
 
 /// From the point `frame_begin` on.

@@ -95,6 +95,7 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
     frame_.view.frame_slot = request.frame_slot;
     frame_.view.cut = request.cut;
     frame_.lists = visible_instances(scene_, frame_.view);
+    frame_.view.visible_depth_m = frame_.lists.depth_m;
 
     const auto light_count = static_cast<std::uint32_t>(lights_.local.size());
     const FrameLook look{.ambient = settings_.ambient.value_or(default_ambient(lights_.sun)),

@@ -22,12 +22,19 @@ DrawLists visible_instances(const Scene& scene, const FrameView& view) {
     const Frustum frustum = make_frustum(view);
     std::vector<Keyed> surfaces;
     std::vector<Keyed> transparents;
+    DrawLists lists;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         if (instance.box.empty() || !may_be_visible(frustum, instance.box, view.origin_m)) {
             continue;
         }
         const double depth_m = view_depth_m(view, instance.box.center());
+        const double middle_m = view_depth_m(view, instance.sphere.center);
+        const double radius_m = instance.sphere.radius_m;
+        const DepthSpan own{std::max(middle_m - radius_m, 0.0), std::max(middle_m + radius_m, 0.0)};
+        lists.depth_m = lists.depth_m ? DepthSpan{std::min(lists.depth_m->nearest_m, own.nearest_m),
+                                                  std::max(lists.depth_m->farthest_m, own.farthest_m)}
+                                      : own;
         if (material_of(scene, instance).alpha_mode == AlphaMode::blend) {
             transparents.emplace_back(-depth_m, i);
         } else {
@@ -36,7 +43,6 @@ DrawLists visible_instances(const Scene& scene, const FrameView& view) {
     }
     std::sort(surfaces.begin(), surfaces.end());
     std::sort(transparents.begin(), transparents.end());
-    DrawLists lists;
     for (const Keyed& surface : surfaces) {
         lists.surfaces.push_back(surface.second);
     }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/camera.hpp"
@@ -16,6 +17,7 @@ struct DrawLists {
     std::vector<std::uint32_t> surfaces;     ///< opaque and mask, in view, front to back
     std::vector<std::uint32_t> transparents; ///< blend, in view, back to front; ties in the scene's order
     std::vector<float> transparent_depths_m; ///< view depth of the centres, in the same order
+    std::optional<DepthSpan> depth_m;        ///< of all of these; empty where nothing is in view
 };
 [[nodiscard]] DrawLists visible_instances(const Scene& scene, const FrameView& view);
 

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "features/volumetrics/depth_range.hpp"
 #include "features/volumetrics/feature_state.hpp"
+#include "features/volumetrics/range_check.hpp"
 
 namespace tyndall::volumetrics {
 namespace {
@@ -149,20 +151,31 @@ Feature::Feature(Feature&&) noexcept = default;
 Feature& Feature::operator=(Feature&&) noexcept = default;
 Feature::~Feature() = default;
 
-tl::expected<void, Error> Feature::begin_frame(const FrameInputs& inputs) {
+tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
     State& state = *state_;
     state.frame.reset();
     state.import_bindings.clear();
     state.omissions.clear();
-    if (auto valid = validate(inputs, state.host_buffers->slot_count()); !valid) {
+    if (auto valid = validate(given, state.host_buffers->slot_count()); !valid) {
         return valid;
     }
-    if (is_empty(inputs.medium)) {
+    if (is_empty(given.medium)) {
         state.before.reset();
         state.omit("all volumetric passes", "the medium is empty");
         return {};
     }
 
+    FrameInputs inputs = given;
+    if (given.settings.grid.law == DepthLawKind::scene) {
+        const FittedRange fitted = fitted_range(given, state.before);
+        inputs.settings.grid.range_m = fitted.range_m;
+        inputs.settings.grid.shape_m = fitted.shape_m;
+        if (fitted.range_m < given.settings.grid.range_m) {
+            state.omit("slices beyond " + text_of(fitted.range_m) + " m", fitted.why);
+        } else {
+            state.omit("a range fitted to the view", fitted.why);
+        }
+    }
     FrameState frame{.inputs = inputs};
     frame.cold = starts_cold(inputs, state.before);
     if (frame.cold) {

@@ -42,7 +42,7 @@ struct Feature::State {
 
     /// Creates the frame's pipelines that are known before anything is declared.
     [[nodiscard]] tl::expected<void, Error> prepare_programs();
-    void omit(const char* what, const char* why) { omissions.push_back({what, why}); }
+    void omit(std::string what, std::string why) { omissions.push_back({std::move(what), std::move(why)}); }
 
     // Passes, in order; declare.cpp.
     void declare_density(rg::GraphBuilder& graph);

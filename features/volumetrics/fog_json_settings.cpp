@@ -15,7 +15,10 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
         }
         settings.grid.shape_m = 0.25F * settings.grid.range_m;
         s.read("law", settings.grid.law,
-               {{"shaped", DepthLawKind::shaped}, {"linear", DepthLawKind::linear}, {"curve", DepthLawKind::curve}});
+               {{"shaped", DepthLawKind::shaped},
+                {"linear", DepthLawKind::linear},
+                {"curve", DepthLawKind::curve},
+                {"scene", DepthLawKind::scene}});
         if (!settings.grid.curve_m.empty() && settings.grid.law != DepthLawKind::curve) {
             s.complain("grid.law", "must be \"curve\" where grid.curve_m is given");
         }

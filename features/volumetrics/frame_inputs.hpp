@@ -30,11 +30,18 @@ struct Sun {
     bool casts_shadows = false; ///< cascades will be given to declare_after_shadow_maps
 };
 
+/// View depths between which all visible surfaces lie.
+struct DepthSpan {
+    double nearest_m = 0.0; ///< 0 or more
+    double farthest_m = 0.0;
+};
+
 struct FrameInputs {
     Medium medium;
     Settings settings;
     Camera camera;
-    glm::uvec2 image_size{0}; ///< pixels; another size than the frame before's begins anew
+    glm::uvec2 image_size{0};                 ///< pixels; another size than the frame before's begins anew
+    std::optional<DepthSpan> visible_depth_m; ///< for the depth law `scene`
     std::optional<Sun> sun;
     std::vector<gpu::GpuLight> lights; ///< what the buffer given to declare_frame_begin holds, in the same order
     double time_s = 0.0;               ///< moves the noise with its wind

@@ -11,6 +11,7 @@ enum class DepthLawKind : std::uint8_t {
     shaped, ///< z(t) = s (2^(t log2(1 + R / s)) - 1); beyond s = 100 R linear
     linear, ///< z(t) = R t
     curve,  ///< a polyline of t through the depths of `curve_m`
+    scene,  ///< shaped, with range and shape made smaller to fit what the view contains (depth_range.hpp)
 };
 
 /// The froxel grid: columns over the image, slices over view depth.

@@ -18,7 +18,8 @@ namespace {
 /// is linear there anyway.
 double effective_shape_m(const GridSettings& grid) {
     const double range_m = grid.range_m;
-    const bool linear = grid.law != DepthLawKind::shaped || grid.shape_m > 100.0F * grid.range_m;
+    const bool shaped = grid.law == DepthLawKind::shaped || grid.law == DepthLawKind::scene;
+    const bool linear = !shaped || grid.shape_m > 100.0F * grid.range_m;
     return linear ? std::exp2(20.0) * range_m : static_cast<double>(grid.shape_m);
 }
 

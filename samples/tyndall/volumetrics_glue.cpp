@@ -64,6 +64,9 @@ void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& black
     inputs.medium = fog_.medium;
     inputs.settings = fog_.settings;
     inputs.camera = {view.view_from_render, view.clip_from_view, view.origin_m};
+    if (view.visible_depth_m) {
+        inputs.visible_depth_m = {view.visible_depth_m->nearest_m, view.visible_depth_m->farthest_m};
+    }
     inputs.image_size = {view.size.width, view.size.height};
     if (sun.illuminance_lux != glm::vec3(0.0F)) {
         inputs.sun = volumetrics::Sun{sun.direction, sun.illuminance_lux, sun.casts_shadows};

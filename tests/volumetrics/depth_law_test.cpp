@@ -26,6 +26,7 @@ double boundary_m(const GridSettings& grid, double k) {
     switch (grid.law) {
     case DepthLawKind::shaped: return shape_m * std::expm1(t * std::log1p(range_m / shape_m));
     case DepthLawKind::linear: return range_m * t;
+    case DepthLawKind::scene:
     case DepthLawKind::curve: break;
     }
     const double at = t * static_cast<double>(grid.curve_m.size());

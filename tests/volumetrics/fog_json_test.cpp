@@ -118,7 +118,7 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"grid": {"width": 0}})"), "grid.width must be between 2 and 1024, not 0.");
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 0}})").substr(0, 12), "grid.range_m");
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 10, "shape_m": 1e-4}})").substr(0, 12), "grid.shape_m");
-    EXPECT_EQ(refusal(R"({"grid": {"law": "log"}})"), "grid.law must be one of \"shaped\", \"linear\", \"curve\".");
+    EXPECT_EQ(refusal(R"({"grid": {"law": "log"}})"), "grid.law must be one of \"shaped\", \"linear\", \"curve\", \"scene\".");
     EXPECT_EQ(refusal(R"({"grid": {"law": "curve"}})"),
               "The number of grid.curve_m's depths must be between 1 and 8, not 0.");
     EXPECT_EQ(refusal(R"({"grid": {"curve_m": [1, 2, 3, 4, 5, 6, 7, 8, 9]}})"),
