@@ -94,7 +94,7 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, Pre
     command.add_flag("--orders", precision.orders,
                      "print the integrators' errors over numbers of slices and their orders of convergence only");
     command.add_flag("--airlight", precision.airlight, "make all surfaces black, so that the fog alone is judged");
-    command.add_option("--out", precision.folder, "folder for precision.csv and precision.json");
+    command.add_option("--out", precision.folder, "folder for tables, pictures, plots and a page (docs/precision.md)");
     command.add_option("--device", precision.device, "part of a device's name, or its index; see tyndall info");
     command.add_flag("--json", precision.json, "print JSON instead of the table");
 }

@@ -1,5 +1,6 @@
 // tyndall precision: pictures of scenes whose exact picture is known, their errors and their times.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <system_error>
 
@@ -10,6 +11,7 @@
 #include "samples/tyndall/precision_bench.hpp"
 #include "samples/tyndall/precision_causes.hpp"
 #include "samples/tyndall/precision_choice.hpp"
+#include "samples/tyndall/precision_files.hpp"
 #include "samples/tyndall/precision_ladder.hpp"
 #include "samples/tyndall/precision_report.hpp"
 #include "samples/tyndall/precision_truths.hpp"
@@ -97,6 +99,11 @@ Expected<void> study_scene(const PrecisionArguments& arguments, const engine::De
             return tl::unexpected(measured.error());
         }
         rows.insert(rows.end(), measured->rows.begin(), measured->rows.end());
+        if (i == 0 && arguments.folder) {
+            if (const auto written = write_pictures(*arguments.folder, *bench, measured->last); !written) {
+                return written;
+            }
+        }
     }
     settle_times(*bench, rows);
     mark_front(rows);
@@ -119,12 +126,10 @@ Expected<void> study_scene(const PrecisionArguments& arguments, const engine::De
 }
 
 Expected<void> write_files(const PrecisionArguments& arguments, const Study& study, const std::string& device) {
-    std::vector<std::pair<const char*, std::string>> files{
-        {"precision.csv", to_csv(study.rows, device)},
-        {"precision.json", to_json(study.rows, study.causes, arguments.size, device)}};
-    if (arguments.causes) {
-        files.emplace_back("causes.csv", to_csv(study.causes));
-    }
+    const std::array<std::pair<const char*, std::string>, 3> files{
+        {{"precision.csv", to_csv(study.rows, device)},
+         {"precision.json", to_json(study.rows, study.causes, arguments.size, device)},
+         {"causes.csv", to_csv(study.causes)}}};
     for (const auto& [name, text] : files) {
         if (const auto written = write(*arguments.folder / name, text); !written) {
             return written;
@@ -190,21 +195,25 @@ int run_precision(const PrecisionArguments& arguments) {
             }
         }
     }
+    study.remarks += own_against_front_of_all(arguments.frames, study.rows);
     const std::string device_text = device->info().name + ", " + device->info().driver;
     if (arguments.folder) {
         if (const auto written = write_files(arguments, study, device_text); !written) {
             return fail(exit_bad_input, written.error());
         }
     }
-    if (arguments.json) {
-        std::fputs(to_json(study.rows, study.causes, arguments.size, device_text).c_str(), stdout);
-        return exit_ok;
+    std::string text = to_json(study.rows, study.causes, arguments.size, device_text);
+    if (!arguments.json) {
+        text = to_table(rows_to_print(arguments, study), device_text) + reference_margins(study.rows);
+        text += (study.causes.empty() ? "" : to_table(study.causes)) + study.remarks;
     }
-    std::string text = to_table(rows_to_print(arguments, study), device_text) + reference_margins(study.rows);
-    if (!study.causes.empty()) {
-        text += to_table(study.causes);
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+    if (arguments.folder) {
+        if (const auto drawn = draw_plots(*arguments.folder); !drawn) {
+            return fail(exit_failed, drawn.error());
+        }
     }
-    std::fputs((text + study.remarks).c_str(), stdout);
     return exit_ok;
 }
 

@@ -104,7 +104,8 @@ Expected<Measurement> measure(Bench& bench, const PrecisionConfiguration& config
                                      .frame = frame,
                                      .physics = image.physics,
                                      .error = compare_images(found, image.values),
-                                     .reference_error = image.relative_error});
+                                     .reference_error = image.relative_error,
+                                     .is_own = configuration == own_configuration(bench.scene)});
             }
         }
     }

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
-#include <functional>
+#include <iterator>
+#include <map>
 #include <optional>
 
 #include "samples/precision/choice.hpp"
-#include "samples/tyndall/precision_ladder.hpp"
 
 namespace tyndall::samples {
 namespace {
@@ -36,6 +37,20 @@ std::string factor(double value) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.3g", value);
     return text.data();
+}
+
+/// Nothing is as exact in less time, if the cheapest that is as exact takes as long.
+std::string standing(std::span<const Measured> all, std::span<const std::string> names, std::size_t own) {
+    const auto describe = [&](std::size_t i) {
+        return names[i] + ": " + percent(all[i].error) + " in " + milliseconds(all[i].time_ms);
+    };
+    const std::size_t rival = *cheapest_within(all, all[own].error);
+    const std::string text = "the scene's own configuration, " + describe(own) + ", ";
+    if (all[rival].time_ms >= all[own].time_ms) {
+        return text + "is on the front\n";
+    }
+    return text + "misses the front: as exact in " + factor(all[rival].time_ms / all[own].time_ms) +
+           " of its time is " + describe(rival) + "\n";
 }
 
 /// A bound of error or of time. The bounded of the two is `bounded`, and the least of the other is chosen.
@@ -132,20 +147,58 @@ Expected<std::string> choose_and_run(const PrecisionArguments& arguments, Bench&
 
 std::string own_against_front(const Bench& bench, std::span<const PrecisionRow> rows) {
     const std::vector<PrecisionRow> judged = judged_rows(bench, rows);
-    const auto own = std::find_if(judged.begin(), judged.end(), [&](const PrecisionRow& row) {
-        return row.configuration == own_configuration(bench.scene);
-    });
+    const auto own = std::find_if(judged.begin(), judged.end(), [](const PrecisionRow& row) { return row.is_own; });
     if (judged.size() < 2 || own == judged.end()) {
         return {};
     }
-    const std::string text = bench.scene.name + ", its own configuration, " + to_text(*own) + ", ";
-    // Nothing is as exact in less time, if the cheapest that is as exact takes as long.
-    const PrecisionRow& rival = judged[*cheapest_within(measured(judged), own->error.relative_l2)];
-    if (rival.fog_ms >= own->fog_ms) {
-        return text + "is on the front\n";
+    std::vector<std::string> names;
+    for (const PrecisionRow& row : judged) {
+        names.push_back(to_text(row.configuration));
     }
-    return text + "misses the front: as exact in " + factor(rival.fog_ms / own->fog_ms) + " of its time is " +
-           to_text(rival) + "\n";
+    return bench.scene.name + ", " + standing(measured(judged), names, static_cast<std::size_t>(own - judged.begin()));
+}
+
+std::string own_against_front_of_all(std::uint32_t last_frame, std::span<const PrecisionRow> rows) {
+    std::map<std::string, std::vector<const PrecisionRow*>> scenes;
+    for (const PrecisionRow& row : rows) {
+        if (row.frame == last_frame && row.physics == full_physics) {
+            scenes[row.scene].push_back(&row);
+        }
+    }
+    if (scenes.size() < 2) {
+        return {};
+    }
+    std::vector<Measured> all;
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name, const auto& is_wanted) {
+        Measured sum;
+        for (const auto& [scene, measured_there] : scenes) {
+            const auto row = std::find_if(measured_there.begin(), measured_there.end(),
+                                          [&](const PrecisionRow* one) { return is_wanted(*one, measured_there); });
+            if (row == measured_there.end()) {
+                return;
+            }
+            sum.error += (*row)->error.relative_l2 * (*row)->error.relative_l2 / static_cast<double>(scenes.size());
+            sum.time_ms += (*row)->fog_ms;
+        }
+        all.push_back({std::sqrt(sum.error), sum.time_ms});
+        names.push_back(name);
+    };
+    add("own", [](const PrecisionRow& row, const auto&) { return row.is_own; });
+    if (all.empty()) {
+        return {};
+    }
+    for (const PrecisionRow* model : scenes.begin()->second) {
+        add(to_text(model->configuration), [&](const PrecisionRow& row, const auto& measured_there) {
+            PrecisionConfiguration wanted = model->configuration;
+            const bool varies = std::any_of(measured_there.begin(), measured_there.end(), [&](const PrecisionRow* one) {
+                return one->configuration.visibility != measured_there.front()->configuration.visibility;
+            });
+            wanted.visibility = varies ? wanted.visibility : row.configuration.visibility;
+            return row.configuration == wanted;
+        });
+    }
+    return all.size() < 2 ? "" : "all scenes together, " + standing(all, names, 0);
 }
 
 } // namespace tyndall::samples

@@ -23,4 +23,8 @@ namespace tyndall::samples {
 /// Whether the scene's own configuration is on the front, or what beats it and by how much; empty if it has no rival.
 [[nodiscard]] std::string own_against_front(const Bench& bench, std::span<const PrecisionRow> rows);
 
+/// The same of all scenes together, by the root mean square of their errors and the sum of their times, of those
+/// configurations that every scene was measured in (visibilities where there is a sun); empty of a single scene.
+[[nodiscard]] std::string own_against_front_of_all(std::uint32_t last_frame, std::span<const PrecisionRow> rows);
+
 } // namespace tyndall::samples

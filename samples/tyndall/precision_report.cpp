@@ -69,19 +69,20 @@ std::string to_text(const PrecisionRow& row) {
 }
 
 std::string to_csv(std::span<const PrecisionRow> rows, const std::string& device) {
-    std::string text = "scene,integrator,visibility,grid,slices,frame,physics,relative_l2,standard_error,rmse_cd_m2,"
-                       "percentile99,maximum,bias,reference_error,fog_ms,relative_time,clocked_ms,frame_ms,on_front,"
-                       "device\n";
+    std::string text =
+        "scene,integrator,visibility,grid,slices,frame,physics,relative_l2,standard_error,rmse_cd_m2,"
+        "percentile99,maximum,bias,reference_error,fog_ms,relative_time,clocked_ms,frame_ms,on_front,own,"
+        "device\n";
     std::array<char, 512> line{};
     for (const PrecisionRow& row : rows) {
         const ErrorMetrics& e = row.error;
         std::snprintf(line.data(), line.size(),
-                      "%s,%s,%s,%s,%u,%u,%s,%.6e,%.2e,%.6e,%.6e,%.6e,%.6e,%.1e,%.3f,%.4f,%.3f,%.3f,%d,\"%s\"\n",
+                      "%s,%s,%s,%s,%u,%u,%s,%.6e,%.2e,%.6e,%.6e,%.6e,%.6e,%.1e,%.3f,%.4f,%.3f,%.3f,%d,%d,\"%s\"\n",
                       row.scene.c_str(), name_of(row.configuration.integrator), name_of(row.configuration.visibility),
                       grid_text(row.configuration.grid).c_str(), row.configuration.slices, row.frame,
                       row.physics.c_str(), e.relative_l2, e.standard_error, e.rmse, e.percentile99, e.maximum, e.bias,
                       row.reference_error, row.fog_ms, row.relative_time, row.clocked_ms, row.frame_ms,
-                      row.on_front ? 1 : 0, device.c_str());
+                      row.on_front ? 1 : 0, row.is_own ? 1 : 0, device.c_str());
         text += line.data();
     }
     return text;
@@ -122,7 +123,8 @@ std::string to_json(std::span<const PrecisionRow> rows, std::span<const CauseRow
                         {"relative_time", row.relative_time},
                         {"clocked_ms", row.clocked_ms},
                         {"frame_ms", row.frame_ms},
-                        {"on_front", row.on_front}});
+                        {"on_front", row.on_front},
+                        {"own", row.is_own}});
     }
     nlohmann::ordered_json cause_list = nlohmann::ordered_json::array();
     for (const CauseRow& row : causes) {

@@ -23,6 +23,7 @@ struct PrecisionRow {
     double relative_time = 1.0;   ///< of the same, by that of the scene's own configuration in the frame that followed
     double fog_ms = 0.0;          ///< relative_time in milliseconds; clocked_ms where nothing is compared
     double frame_ms = 0.0;
+    bool is_own = false;   ///< the configuration is what the scene's fog asks for
     bool on_front = false; ///< of its scene, frame and truth: nothing is both faster and more exact
 };
 
