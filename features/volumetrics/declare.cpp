@@ -33,15 +33,22 @@ VkFormat volume_format(const Settings& settings) {
     return settings.storage == StorageFormat::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-rg::ImageDesc froxel_image(const Settings& settings) {
-    return {.format = volume_format(settings),
-            .extent = {settings.grid.width, settings.grid.height, settings.grid.slices},
-            .type = VK_IMAGE_TYPE_3D};
+/// An image of the grid's columns.
+rg::ImageDesc columns_image(const FrameInputs& inputs) {
+    const glm::uvec2 columns = allocated_columns(inputs);
+    return {.format = volume_format(inputs.settings), .extent = {columns.x, columns.y, 1}};
+}
+
+rg::ImageDesc froxel_image(const FrameInputs& inputs) {
+    rg::ImageDesc desc = columns_image(inputs);
+    desc.extent.depth = inputs.settings.grid.slices;
+    desc.type = VK_IMAGE_TYPE_3D;
+    return desc;
 }
 
 /// The specialization constant `light_changes` of froxel_lighting.comp: some processors run loops of no iteration once.
 std::uint32_t light_change_kind(const gpu::VolumetricParameters& u) {
-    const bool anything = u.temporal.w > 0.0F || u.phase.x * u.motion.x > 0.0F;
+    const bool anything = u.temporal.w > 0.0F || u.phase.x * u.motion.w > 0.0F;
     return u.frame.w > 0 ? 2 : anything ? 1 : 0;
 }
 
@@ -54,16 +61,16 @@ constexpr rg::ViewDesc depth_view{.range = {.aspects = VK_IMAGE_ASPECT_DEPTH_BIT
 
 void Feature::State::declare_density(rg::GraphBuilder& graph) {
     const Settings& settings = frame->inputs.settings;
-    rg::Image density = graph.create_image("fog density", froxel_image(settings));
+    rg::Image density = graph.create_image(named("fog density"), froxel_image(frame->inputs));
     const Dispatch dispatch = covering(frame->density_injection, row_group(settings.grid.width), settings.grid.width,
                                        settings.grid.height, settings.grid.slices);
-    auto pass = graph.add_pass("density injection", PassKind::compute);
+    auto pass = graph.add_pass(named("density injection"), PassKind::compute);
     pass.on_queue(wish())
         .reads(frame->parameter_buffer, Access::uniform_compute)
         .writes(density, Access::storage_compute);
     rg::Image emitted;
     if (frame->emission) {
-        emitted = graph.create_image("fog emission", froxel_image(settings));
+        emitted = graph.create_image(named("fog emission"), froxel_image(frame->inputs));
         pass.writes(emitted, Access::storage_compute);
         frame->stages.emission = emitted;
     }
@@ -82,16 +89,16 @@ void Feature::State::declare_clustering(rg::GraphBuilder& graph) {
     const gpu::LightClusters& c = frame->cluster_parameters;
     const std::uint32_t words = c.counts.x * c.counts.y * c.counts.z * c.block.w;
     const HostBuffers::Slot& slot = host_buffers->slot(frame->inputs.frame_slot);
-    const rg::Buffer parameters = graph.import_buffer("light cluster parameters",
+    const rg::Buffer parameters = graph.import_buffer(named("light cluster parameters"),
                                                       {.size_bytes = sizeof(gpu::LightClusters)}, {.read_only = true});
     graph.share_between_queues(parameters);
     import_bindings.push_back({.resource = parameters.resource, .buffer = slot.clusters});
-    rg::Buffer masks = graph.create_buffer("light cluster masks", {.size_bytes = VkDeviceSize{words} * 4});
+    rg::Buffer masks = graph.create_buffer(named("light cluster masks"), {.size_bytes = VkDeviceSize{words} * 4});
     const std::uint32_t compact_count = std::min<std::uint32_t>(c.grid.w, TYNDALL_COMPACT_LIGHT_COUNT);
-    rg::Buffer compact =
-        graph.create_buffer("compact lights", {.size_bytes = sizeof(gpu::GpuLight) * TYNDALL_COMPACT_LIGHT_COUNT});
+    rg::Buffer compact = graph.create_buffer(named("compact lights"),
+                                             {.size_bytes = sizeof(gpu::GpuLight) * TYNDALL_COMPACT_LIGHT_COUNT});
     const Dispatch dispatch = covering(frame->light_clustering, {64, 1, 1}, std::max(words, compact_count), 1, 1);
-    auto pass = graph.add_pass("light clustering", PassKind::compute);
+    auto pass = graph.add_pass(named("light clustering"), PassKind::compute);
     pass.on_queue(wish())
         .reads(frame->parameter_buffer, Access::uniform_compute)
         .reads(parameters, Access::uniform_compute)
@@ -142,8 +149,8 @@ tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, c
     }
     const rg::ImageDesc esm_desc{.format = VK_FORMAT_R32_SFLOAT, .extent = {size, size, 1}, .layers = cascades->layers};
     const std::uint32_t layers = cascades->layers;
-    rg::Image esm = graph.create_image("sun ESM", esm_desc);
-    auto down = graph.add_pass("ESM downsample", PassKind::compute);
+    rg::Image esm = graph.create_image(named("sun ESM"), esm_desc);
+    auto down = graph.add_pass(named("ESM downsample"), PassKind::compute);
     down.on_queue(wish())
         .reads(frame->parameter_buffer, Access::uniform_compute)
         .reads(shadow.cascades, Access::sampled_compute)
@@ -156,8 +163,8 @@ tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, c
     });
 
     const auto blur = [&](const char* pass_name, const char* image_name, const Program& program, rg::Image source) {
-        rg::Image blurred = graph.create_image(image_name, esm_desc);
-        auto pass = graph.add_pass(pass_name, PassKind::compute);
+        rg::Image blurred = graph.create_image(named(image_name), esm_desc);
+        auto pass = graph.add_pass(named(pass_name), PassKind::compute);
         pass.on_queue(wish()).reads(source, Access::storage_compute).writes(blurred, Access::storage_compute);
         pass.executes([=, dispatch = covering(program, group, size, size, layers)](PassContext& ctx) {
             run(ctx, dispatch, std::array{ctx.storage(0, source, array_view), ctx.storage(1, blurred, array_view)});
@@ -199,9 +206,9 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         return tl::unexpected(program.error());
     }
 
-    rg::Image in_scattered = graph.create_image("in-scattered radiance", froxel_image(inputs.settings));
+    rg::Image in_scattered = graph.create_image(named("in-scattered radiance"), froxel_image(inputs));
     rg::Image history;
-    auto pass = graph.add_pass("froxel lighting", PassKind::compute);
+    auto pass = graph.add_pass(named("froxel lighting"), PassKind::compute);
     pass.on_queue(wish()).reads(frame->parameter_buffer, Access::uniform_compute);
     if (variant.history) {
         history = graph.history_of(in_scattered);
@@ -263,10 +270,10 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
         frame->volume.reset();
         return tl::unexpected(program.error());
     }
-    rg::Image accumulated = graph.create_image(
-        "accumulated fog",
-        {.format = volume_format(settings), .extent = {grid.width, grid.height, 1}, .layers = grid.slices + 1});
-    auto pass = graph.add_pass("fog accumulation", PassKind::compute);
+    rg::ImageDesc boundaries = columns_image(frame->inputs);
+    boundaries.layers = grid.slices + 1;
+    rg::Image accumulated = graph.create_image(named("accumulated fog"), boundaries);
+    auto pass = graph.add_pass(named("fog accumulation"), PassKind::compute);
     pass.on_queue(wish())
         .reads(frame->parameter_buffer, Access::uniform_compute)
         .reads(frame->stages.density, Access::storage_compute)
@@ -278,8 +285,8 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
     }
     rg::Image estimate;
     if (settings.error_estimate) {
-        estimate = graph.create_image(
-            "fog error estimate", {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {grid.width, grid.height, 1}});
+        estimate = graph.create_image(named("fog error estimate"), {.format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                                    .extent = {grid.width, grid.height, 1}});
         pass.writes(estimate, Access::storage_compute);
         frame->stages.error_estimate = estimate;
     }
@@ -302,7 +309,7 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
 }
 
 void Feature::State::declare_fog(rg::GraphBuilder& graph, const OpaqueResources& resources) {
-    auto pass = graph.add_pass("fog on opaque", PassKind::graphics);
+    auto pass = graph.add_pass(named("fog on opaque"), PassKind::graphics);
     pass.reads(frame->parameter_buffer, Access::uniform_graphics)
         .reads(resources.depth, Access::sampled_fragment)
         .reads(frame->volume->accumulated, Access::sampled_fragment)

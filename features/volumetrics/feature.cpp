@@ -64,6 +64,12 @@ tl::expected<void, Error> validate(const FrameInputs& inputs, std::uint32_t slot
             return tl::unexpected(Error{"sun.direction must have unit length."});
         }
     }
+    const glm::uvec2& columns = inputs.allocated_columns;
+    const GridSettings& grid = inputs.settings.grid;
+    if (columns != glm::uvec2(0) &&
+        (columns.x < grid.width || columns.y < grid.height || columns.x > 1024 || columns.y > 1024)) {
+        return tl::unexpected(Error{"allocated_columns must be between the grid's width and height and 1024."});
+    }
     if (!std::isfinite(inputs.time_s)) {
         return tl::unexpected(Error{"time_s must be finite."});
     }
@@ -84,9 +90,9 @@ GroupShape row_group(std::uint32_t width, std::uint32_t longest) {
     return {((width + groups - 1) / groups + 7) / 8 * 8, 1, 1};
 }
 
-Feature::State::~State() {
-    vk->DestroySampler(device, linear, nullptr);
-    vk->DestroySampler(device, nearest, nullptr);
+Feature::Shared::~Shared() {
+    info.vk->DestroySampler(info.device, linear, nullptr);
+    info.vk->DestroySampler(info.device, nearest, nullptr);
 }
 
 rg::QueueWish Feature::State::wish() const {
@@ -130,29 +136,40 @@ tl::expected<Feature, Error> Feature::create(const FeatureInfo& info) {
         return tl::unexpected(
             Error{"FeatureInfo must name a device, its function table and at least one frame in flight."});
     }
-    auto buffers =
-        HostBuffers::create(*info.vk, info.device, info.memory_properties, info.frames_in_flight, info.queue_families);
-    if (!buffers) {
-        return tl::unexpected(buffers.error());
-    }
-    auto state = std::make_unique<State>(info, std::move(*buffers));
+    auto shared = std::make_unique<Shared>(info);
     for (const bool is_linear : {true, false}) {
         auto sampler = make_sampler(*info.vk, info.device, is_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
         if (!sampler) {
             return tl::unexpected(sampler.error());
         }
-        (is_linear ? state->linear : state->nearest) = *sampler;
+        (is_linear ? shared->linear : shared->nearest) = *sampler;
     }
-    return Feature(std::move(state));
+    return Feature(std::move(shared));
 }
 
-Feature::Feature(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Feature::Feature(std::unique_ptr<Shared> shared) : shared_(std::move(shared)) {}
 Feature::Feature(Feature&&) noexcept = default;
 Feature& Feature::operator=(Feature&&) noexcept = default;
 Feature::~Feature() = default;
 
 tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
-    State& state = *state_;
+    if (given.view >= most_views) {
+        return tl::unexpected(Error{"view must be less than " + std::to_string(most_views) + "."});
+    }
+    if (views_.size() <= given.view) {
+        views_.resize(given.view + 1);
+    }
+    std::unique_ptr<State>& place = views_[given.view];
+    if (!place) {
+        const FeatureInfo& info = shared_->info;
+        auto buffers = HostBuffers::create(*info.vk, info.device, info.memory_properties, info.frames_in_flight,
+                                           info.queue_families);
+        if (!buffers) {
+            return tl::unexpected(buffers.error());
+        }
+        place = std::make_unique<State>(*shared_, given.view, std::move(*buffers));
+    }
+    State& state = *place;
     state.frame.reset();
     state.import_bindings.clear();
     state.omissions.clear();
@@ -204,11 +221,13 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
     return {};
 }
 
-tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, const FrameBeginResources& resources) {
-    State& state = *state_;
-    if (!state.frame) {
+tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, const FrameBeginResources& resources,
+                                                       std::uint32_t view) {
+    State* const found = find_view(view);
+    if (found == nullptr || !found->frame) {
         return {};
     }
+    State& state = *found;
     FrameState& frame = *state.frame;
     if (frame.lights != LocalLights::none && !resources.lights.valid()) {
         return tl::unexpected(Error{"lights is not empty, so declare_frame_begin needs the light buffer."});
@@ -216,7 +235,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     frame.light_buffer = resources.lights;
     const HostBuffers::Slot& slot = state.host_buffers->slot(frame.inputs.frame_slot);
     frame.parameter_buffer = graph.import_buffer(
-        "volumetric parameters", {.size_bytes = sizeof(gpu::VolumetricParameters)}, {.read_only = true});
+        state.named("volumetric parameters"), {.size_bytes = sizeof(gpu::VolumetricParameters)}, {.read_only = true});
     graph.share_between_queues(frame.parameter_buffer);
     state.import_bindings.push_back({.resource = frame.parameter_buffer.resource, .buffer = slot.parameters});
 
@@ -241,12 +260,13 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     return {};
 }
 
-tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& graph,
-                                                             const ShadowResources& resources) {
-    State& state = *state_;
-    if (!state.frame) {
+tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& graph, const ShadowResources& resources,
+                                                             std::uint32_t view) {
+    State* const found = find_view(view);
+    if (found == nullptr || !found->frame) {
         return {};
     }
+    State& state = *found;
     FrameState& frame = *state.frame;
     if (frame.sun_shadow) {
         if (auto declared = state.declare_esm(graph, resources); !declared) {
@@ -265,32 +285,43 @@ tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& g
     return state.declare_accumulation(graph);
 }
 
-void Feature::declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResources& resources) {
-    if (state_->frame && state_->frame->volume) {
-        state_->declare_fog(graph, resources);
+void Feature::declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResources& resources, std::uint32_t view) {
+    State* const found = find_view(view);
+    if (found != nullptr && found->frame && found->frame->volume) {
+        found->declare_fog(graph, resources);
     }
 }
 
-const std::optional<ClusterResources>& Feature::clusters() const {
+Feature::State* Feature::find_view(std::uint32_t view) const {
+    return view < views_.size() ? views_[view].get() : nullptr;
+}
+
+const std::optional<ClusterResources>& Feature::clusters(std::uint32_t view) const {
     static const std::optional<ClusterResources> nothing;
-    return state_->frame ? state_->frame->clusters : nothing;
+    const State* const found = find_view(view);
+    return found != nullptr && found->frame ? found->frame->clusters : nothing;
 }
 
-const std::optional<VolumeResources>& Feature::volume() const {
+const std::optional<VolumeResources>& Feature::volume(std::uint32_t view) const {
     static const std::optional<VolumeResources> nothing;
-    return state_->frame ? state_->frame->volume : nothing;
+    const State* const found = find_view(view);
+    return found != nullptr && found->frame ? found->frame->volume : nothing;
 }
 
-const StageResources& Feature::stages() const {
+const StageResources& Feature::stages(std::uint32_t view) const {
     static const StageResources nothing;
-    return state_->frame ? state_->frame->stages : nothing;
+    const State* const found = find_view(view);
+    return found != nullptr && found->frame ? found->frame->stages : nothing;
 }
 
-std::span<const rg::ImportBinding> Feature::bindings() const {
-    return state_->import_bindings;
+std::span<const rg::ImportBinding> Feature::bindings(std::uint32_t view) const {
+    const State* const found = find_view(view);
+    return found != nullptr ? std::span<const rg::ImportBinding>(found->import_bindings)
+                            : std::span<const rg::ImportBinding>();
 }
-std::span<const Omission> Feature::omissions() const {
-    return state_->omissions;
+std::span<const Omission> Feature::omissions(std::uint32_t view) const {
+    const State* const found = find_view(view);
+    return found != nullptr ? std::span<const Omission>(found->omissions) : std::span<const Omission>();
 }
 
 } // namespace tyndall::volumetrics

@@ -6,7 +6,8 @@
 //   feature.declare_after_opaque(graph, {.color = color, .depth = depth}); // at after_opaque; `color` becomes the
 //   fogged version executor.submit(..., feature.bindings());
 //
-// What a frame does not need is not declared, and `omissions` says why.
+// What a frame does not need is not declared, and `omissions` says why. Of several views in a frame each goes this way
+// by itself, with its own history; the order of views does not matter.
 #pragma once
 
 #include <cstdint>
@@ -82,36 +83,44 @@ struct Omission {
 
 class Feature {
 public:
+    static constexpr std::uint32_t most_views = 64;
+
     [[nodiscard]] static tl::expected<Feature, Error> create(const FeatureInfo& info);
     Feature(Feature&&) noexcept;
     Feature& operator=(Feature&&) noexcept;
     ~Feature(); ///< the host has waited for the frames in flight
 
-    /// Validates, makes the pipelines that the frame needs, writes its uniforms into `frame_slot`. After an error the
-    /// frame has no fog: the declare functions do nothing.
+    /// Validates, makes the pipelines that the view's frame needs, writes its uniforms into `frame_slot`. After an
+    /// error the view has no fog in this frame: the declare functions do nothing.
     [[nodiscard]] tl::expected<void, Error> begin_frame(const FrameInputs& inputs);
 
     /// Density injection and light clustering.
-    [[nodiscard]] tl::expected<void, Error> declare_frame_begin(rg::GraphBuilder& graph,
-                                                                const FrameBeginResources& resources);
+    [[nodiscard]] tl::expected<void, Error>
+    declare_frame_begin(rg::GraphBuilder& graph, const FrameBeginResources& resources, std::uint32_t view = 0);
     /// ESM downsample, blur x, blur y, froxel lighting, accumulation.
-    [[nodiscard]] tl::expected<void, Error> declare_after_shadow_maps(rg::GraphBuilder& graph,
-                                                                      const ShadowResources& resources);
+    [[nodiscard]] tl::expected<void, Error>
+    declare_after_shadow_maps(rg::GraphBuilder& graph, const ShadowResources& resources, std::uint32_t view = 0);
     /// Fog on opaque.
-    void declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResources& resources);
+    void declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResources& resources, std::uint32_t view = 0);
 
-    [[nodiscard]] const std::optional<ClusterResources>& clusters() const; ///< after declare_frame_begin
-    [[nodiscard]] const std::optional<VolumeResources>& volume() const;    ///< after declare_after_shadow_maps
-    [[nodiscard]] const StageResources& stages() const;                    ///< after declare_after_shadow_maps
+    /// After declare_frame_begin.
+    [[nodiscard]] const std::optional<ClusterResources>& clusters(std::uint32_t view = 0) const;
+    /// These two after declare_after_shadow_maps.
+    [[nodiscard]] const std::optional<VolumeResources>& volume(std::uint32_t view = 0) const;
+    [[nodiscard]] const StageResources& stages(std::uint32_t view = 0) const;
 
-    /// What the executor needs beside the host's own bindings.
-    [[nodiscard]] std::span<const rg::ImportBinding> bindings() const;
-    [[nodiscard]] std::span<const Omission> omissions() const;
+    /// What the executor needs beside the host's own bindings, of each view of the frame.
+    [[nodiscard]] std::span<const rg::ImportBinding> bindings(std::uint32_t view = 0) const;
+    [[nodiscard]] std::span<const Omission> omissions(std::uint32_t view = 0) const;
 
 private:
+    struct Shared;
     struct State;
-    explicit Feature(std::unique_ptr<State> state);
-    std::unique_ptr<State> state_;
+    explicit Feature(std::unique_ptr<Shared> shared);
+    [[nodiscard]] State* find_view(std::uint32_t view) const; ///< null where it has never begun a frame
+
+    std::unique_ptr<Shared> shared_;
+    std::vector<std::unique_ptr<State>> views_; ///< null for those between that have never begun a frame
 };
 
 } // namespace tyndall::volumetrics

@@ -32,13 +32,26 @@ struct FrameState {
     StageResources stages;
 };
 
+/// What all views use.
+struct Feature::Shared {
+    explicit Shared(const FeatureInfo& given) : info(given), pipelines(*given.vk, given.device, given.pipeline_cache) {}
+    Shared(const Shared&) = delete;
+    Shared& operator=(const Shared&) = delete;
+    ~Shared();
+
+    FeatureInfo info;
+    VkSampler linear = VK_NULL_HANDLE;  ///< clamps to the edge
+    VkSampler nearest = VK_NULL_HANDLE; ///< clamps to the edge
+    Pipelines pipelines;
+};
+
+/// One view.
 struct Feature::State {
-    State(const FeatureInfo& info, std::unique_ptr<HostBuffers> buffers)
-        : vk(info.vk), device(info.device), pipelines(*info.vk, info.device, info.pipeline_cache),
+    State(Shared& shared, std::uint32_t view_index, std::unique_ptr<HostBuffers> buffers)
+        : view(view_index), linear(shared.linear), nearest(shared.nearest), pipelines(shared.pipelines),
           host_buffers(std::move(buffers)) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
-    ~State();
 
     /// Creates the frame's pipelines that are known before anything is declared.
     [[nodiscard]] tl::expected<void, Error> prepare_programs();
@@ -53,11 +66,15 @@ struct Feature::State {
     void declare_fog(rg::GraphBuilder& graph, const OpaqueResources& resources);
     [[nodiscard]] rg::QueueWish wish() const;
 
-    const rg::DeviceTable* vk;
-    VkDevice device;
-    VkSampler linear = VK_NULL_HANDLE;  ///< clamps to the edge
-    VkSampler nearest = VK_NULL_HANDLE; ///< clamps to the edge
-    Pipelines pipelines;
+    /// Of a resource or a pass of this view: the executor knows a history by its name.
+    [[nodiscard]] std::string named(const char* name) const {
+        return view == 0 ? name : std::string(name) + ", view " + std::to_string(view);
+    }
+
+    std::uint32_t view;
+    VkSampler linear;
+    VkSampler nearest;
+    Pipelines& pipelines;
     std::unique_ptr<HostBuffers> host_buffers;
 
     std::optional<FrameState> frame;   ///< empty where there is no fog

@@ -194,13 +194,19 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float
     return count;
 }
 
+glm::vec4 rendered_area(const FrameInputs& frame) {
+    const glm::vec2 columns(frame.settings.grid.width, frame.settings.grid.height);
+    return {columns / glm::vec2(allocated_columns(frame)), 0.0F, 0.0F};
+}
+
 /// Their number.
 std::size_t write_changes(const FrameInputs& frame, const std::optional<FrameMemory>& before,
                           gpu::VolumetricParameters& u) {
     if (!before) {
         return 0;
     }
-    u.motion.x = static_cast<float>(glm::distance(frame.camera.origin_m, before->camera.origin_m));
+    const glm::dvec3 eye_before_m = before->camera.origin_m - frame.camera.origin_m;
+    u.motion = glm::vec4(eye_before_m, is_perspective(frame.camera) ? glm::length(eye_before_m) : 0.0);
     std::size_t count = 0;
     for (const LightChange& change : light_changes(frame, *before)) {
         u.changed_lights[2 * count] = change.before;
@@ -211,6 +217,10 @@ std::size_t write_changes(const FrameInputs& frame, const std::optional<FrameMem
 }
 
 } // namespace
+
+glm::uvec2 allocated_columns(const FrameInputs& frame) {
+    return glm::max(frame.allocated_columns, glm::uvec2(frame.settings.grid.width, frame.settings.grid.height));
+}
 
 gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera, float radiance_scale) {
     // clip.x = p00 x + p20 (-z) + p30 = ndc w  with  ndc = 2 uv - 1, solved for x at view depth z; y alike.
@@ -291,6 +301,7 @@ bool starts_cold(const FrameInputs& frame, const std::optional<FrameMemory>& bef
     }
     // The same bits in every member but the radiance scale, which rescales history exactly.
     gpu::ScatteringVolume now = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
+    now.area = rendered_area(frame);
     now.scale.x = before->volume.scale.x;
     now.scale.y = before->volume.scale.y;
     now.beyond = before->volume.beyond; // holds no froxel
@@ -317,6 +328,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
 
     gpu::VolumetricParameters u{};
     u.volume = scattering_volume(frame.settings.grid, frame.camera, radiance_scale);
+    u.volume.area = rendered_area(frame);
     u.render_from_view = glm::mat4(glm::dmat4(render_from_view));
     const glm::dvec4 slope(u.volume.slope);
     const glm::dvec4 origin(u.volume.origin);

@@ -27,6 +27,9 @@ struct FrameMemory {
 /// `parameters` are those that were made of `frame`.
 [[nodiscard]] FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters& parameters);
 
+/// Columns of the images that hold the grid.
+[[nodiscard]] glm::uvec2 allocated_columns(const FrameInputs& frame);
+
 /// The volume that the grid settings and a camera span. `radiance_scale` is what radiance is stored times.
 [[nodiscard]] gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera,
                                                       float radiance_scale);

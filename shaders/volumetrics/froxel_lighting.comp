@@ -114,6 +114,18 @@ vec4 fetch_history(ivec3 froxel, float near_m) {
     return is_finite(old) ? old : vec4(0.0);
 }
 
+// The change of the phase function by the eye's way, of the sun's light as it is, else no less than it can be. It counts a
+// third, as an average over more frames is worth some lag.
+float a_third_of_change_of_view(RaySegment segment) {
+    if (has_sun) {
+        vec3 to_eye_before = normalize(u.motion.xyz - segment.position);
+        float now = phase_function(phase_angle(u.sun_direction.xyz, segment.to_eye));
+        float before = phase_function(phase_angle(u.sun_direction.xyz, to_eye_before));
+        return abs(now - before) / max(3.0 * now, 1e-30);
+    }
+    return u.phase.x * u.motion.w / (3.0 * max(length(segment.position), max(u.motion.w, 1e-10)));
+}
+
 // How much the light of the froxel has changed since, in parts of itself: sun, ambient and phase function everywhere,
 // the direction of view with the camera's way, local lights where they reach. Its diagonal and a half hold the parts of
 // its neighbours that history is filtered from.
@@ -122,9 +134,8 @@ float change_since(RaySegment segment, float depth_m) {
         return 0.0;
     }
     float change = u.temporal.w;
-    if (!camera_stands) {
-        float distance_m = length(segment.position);
-        change += u.phase.x * u.motion.x / max(distance_m, max(u.motion.x, 1e-10));
+    if (!camera_stands && is_perspective && u.phase.x > 0.0) {
+        change += a_third_of_change_of_view(segment);
     }
     vec2 cell_m = (u.volume.slope.xy * depth_m + u.volume.origin.xy) / (u.volume.grid.xy - 1.0);
     float reach_m = 1.5 * length(vec3(cell_m, segment.behind_m + segment.ahead_m));

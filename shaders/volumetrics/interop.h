@@ -51,7 +51,7 @@ struct VolumetricParameters {
     vec4 phase_weight;    // of each lobe, of sum 1
     vec4 temporal;        // x: steady weight of a new frame; y: oldest age, frames; z: history's radiance times z is in
                           // this frame's scale; w: part by which the light of every froxel may have changed since
-    vec4 motion;          // x: way of the camera since the frame before, m; yzw 0
+    vec4 motion;          // xyz: the frame before's eye, render space, m; w: its distance, 0 for an orthographic view
     vec4 jitter;          // xyz: this frame's offset in [0, 1); w: 0 samples the centre of each froxel
     vec4 ambient;         // rgb radiance from every direction
     vec4 ambient_x;       // rgb: what scattering leaves of the part of ambient radiance that is proportional to the x of

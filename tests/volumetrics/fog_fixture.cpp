@@ -122,17 +122,44 @@ void FogTest::TearDown() {
 }
 
 Result FogTest::render(const Scene& scene) {
+    return std::move(render_views(std::span(&scene, 1)).front());
+}
+
+std::vector<Result> FogTest::render_views(std::span<const Scene> scenes) {
     rg::GraphBuilder graph;
     std::vector<rg::ImportBinding> imports;
+    EXPECT_TRUE(executor().wait_for_slot());
+    std::vector<ReadBack> read_back;
+    for (std::uint32_t view = 0; view < scenes.size(); ++view) {
+        read_back.push_back(declare_view(graph, imports, scenes[view], view));
+    }
+    const rg::DeclaredGraph declared = graph.finish();
+    run(declared, imports);
+    std::vector<Result> results;
+    for (ReadBack& view : read_back) {
+        for (const rg::PassDesc& pass : declared.desc.passes) {
+            view.result.pass_names.push_back(pass.name);
+        }
+        results.push_back(std::move(view).collect());
+    }
+    return results;
+}
+
+FogTest::ReadBack FogTest::declare_view(rg::GraphBuilder& graph, std::vector<rg::ImportBinding>& imports,
+                                        const Scene& scene, std::uint32_t view) {
+    const auto named = [&](const std::string& name) {
+        return view == 0 ? name : name + ", view " + std::to_string(view);
+    };
     const auto import_written = [&](const char* name, const HostBuffer& buffer) {
         const rg::Buffer handle =
-            graph.import_buffer(name, {.size_bytes = buffer.size_bytes}, tyndall::test::written_by_host());
+            graph.import_buffer(named(name), {.size_bytes = buffer.size_bytes}, tyndall::test::written_by_host());
         imports.push_back({.resource = handle.resource, .buffer = buffer.buffer});
         return handle;
     };
     const auto import_read = [&](const std::string& name, VkDeviceSize size_bytes, HostBuffer& buffer) {
         buffer = host_buffer(size_bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-        const rg::Buffer handle = graph.import_buffer(name, {.size_bytes = size_bytes}, tyndall::test::read_by_host());
+        const rg::Buffer handle =
+            graph.import_buffer(named(name), {.size_bytes = size_bytes}, tyndall::test::read_by_host());
         imports.push_back({.resource = handle.resource, .buffer = buffer.buffer});
         return handle;
     };
@@ -148,16 +175,16 @@ Result FogTest::render(const Scene& scene) {
         }
     }
     rg::Image color = graph.create_image(
-        "scene color", {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {scene.image.x, scene.image.y, 1}});
-    rg::Image depth = graph.create_image("scene depth", depth_image(scene.image.x, scene.image.y, 1));
-    upload(graph, "upload color", import_written("color data", color_data), color);
-    upload(graph, "upload depth", import_written("depth data", depth_data), depth);
+        named("scene color"), {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {scene.image.x, scene.image.y, 1}});
+    rg::Image depth = graph.create_image(named("scene depth"), depth_image(scene.image.x, scene.image.y, 1));
+    upload(graph, named("upload color"), import_written("color data", color_data), color);
+    upload(graph, named("upload depth"), import_written("depth data", depth_data), depth);
 
     FrameInputs inputs = scene.inputs;
     inputs.lights = scene.lights;
     inputs.image_size = scene.image;
     inputs.frame_slot = executor().next_slot();
-    EXPECT_TRUE(executor().wait_for_slot());
+    inputs.view = view;
     FrameBeginResources begin;
     if (!scene.lights.empty()) {
         const HostBuffer data =
@@ -172,78 +199,72 @@ Result FogTest::render(const Scene& scene) {
         std::memcpy(data.mapped, scene.cascade_depths.data(), scene.cascade_depths.size() * sizeof(float));
         const HostBuffer parameters = host_buffer(sizeof(gpu::SunCascades), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
         std::memcpy(parameters.mapped, &scene.cascades, sizeof(gpu::SunCascades));
-        shadow.cascades = graph.create_image("sun cascades", depth_image(scene.cascade_size, scene.cascade_size, 4));
-        upload(graph, "upload cascades", import_written("cascade data", data), shadow.cascades);
+        shadow.cascades =
+            graph.create_image(named("sun cascades"), depth_image(scene.cascade_size, scene.cascade_size, 4));
+        upload(graph, named("upload cascades"), import_written("cascade data", data), shadow.cascades);
         shadow.parameters = import_written("cascade parameters", parameters);
     }
 
     // The feature, as a host drives it.
     const auto check = [](const tl::expected<void, Error>& result) { EXPECT_TRUE(result) << result.error().message; };
     check(feature_->begin_frame(inputs));
-    check(feature_->declare_frame_begin(graph, begin));
-    check(feature_->declare_after_shadow_maps(graph, shadow));
-    feature_->declare_after_opaque(graph, {.color = color, .depth = depth});
+    check(feature_->declare_frame_begin(graph, begin, view));
+    check(feature_->declare_after_shadow_maps(graph, shadow, view));
+    feature_->declare_after_opaque(graph, {.color = color, .depth = depth}, view);
 
     // Outputs.
-    Result result;
-    HostBuffer color_out;
-    HostBuffer density_out;
-    HostBuffer in_scattered_out;
-    HostBuffer accumulated_out;
-    HostBuffer esm_out;
-    HostBuffer masks_out;
+    ReadBack out;
     const auto read_image = [&](const char* name, rg::Image image, HostBuffer& buffer) {
         const rg::ImageDesc desc = *graph.describe(image);
         const VkDeviceSize size_bytes = VkDeviceSize{desc.extent.width} * desc.extent.height * desc.extent.depth *
                                         desc.layers * rg::format_texel_bytes(desc.format);
         rg::Buffer target = import_read(name, size_bytes, buffer);
-        download(graph, std::string("read ") + name, image, target);
+        download(graph, named(std::string("read ") + name), image, target);
     };
-    read_image("color out", color, color_out);
+    read_image("color out", color, out.color);
     const VkFormat format =
         inputs.settings.storage == StorageFormat::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-    if (feature_->volume()) {
-        read_image("density out", feature_->stages().density, density_out);
-        read_image("accumulated out", feature_->volume()->accumulated, accumulated_out);
-        rg::Image in_scattered = feature_->volume()->in_scattered;
-        read_image("in-scattered out", in_scattered, in_scattered_out);
+    if (feature_->volume(view)) {
+        read_image("density out", feature_->stages(view).density, out.density);
+        read_image("accumulated out", feature_->volume(view)->accumulated, out.accumulated);
+        rg::Image in_scattered = feature_->volume(view)->in_scattered;
+        read_image("in-scattered out", in_scattered, out.in_scattered);
         if (scene.poison) {
             clear(graph, in_scattered, *scene.poison);
         }
     }
-    if (feature_->stages().esm.valid()) {
-        read_image("esm out", feature_->stages().esm, esm_out);
+    if (feature_->stages(view).esm.valid()) {
+        read_image("esm out", feature_->stages(view).esm, out.esm);
     }
-    if (feature_->clusters()) {
-        const rg::Buffer masks = feature_->clusters()->masks;
-        rg::Buffer target = import_read("masks out", graph.describe(masks)->size_bytes, masks_out);
-        download(graph, "read masks", masks, target);
+    if (feature_->clusters(view)) {
+        const rg::Buffer masks = feature_->clusters(view)->masks;
+        rg::Buffer target = import_read("masks out", graph.describe(masks)->size_bytes, out.masks);
+        download(graph, named("read masks"), masks, target);
     }
-    const auto bindings = feature_->bindings();
+    const auto bindings = feature_->bindings(view);
     imports.insert(imports.end(), bindings.begin(), bindings.end());
-    for (const Omission& omission : feature_->omissions()) {
-        result.omissions.push_back(omission.what + ": " + omission.why);
+    for (const Omission& omission : feature_->omissions(view)) {
+        out.result.omissions.push_back(omission.what + ": " + omission.why);
     }
 
-    const rg::DeclaredGraph declared = graph.finish();
-    for (const rg::PassDesc& pass : declared.desc.passes) {
-        result.pass_names.push_back(pass.name);
-    }
-    run(declared, imports);
+    out.format = format;
+    return out;
+}
 
-    result.color = texels(color_out, VK_FORMAT_R32G32B32A32_SFLOAT);
-    if (accumulated_out.mapped != nullptr) {
-        result.density = texels(density_out, format);
-        result.in_scattered = texels(in_scattered_out, format);
-        result.accumulated = texels(accumulated_out, format);
+Result FogTest::ReadBack::collect() && {
+    result.color = texels(color, VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (accumulated.mapped != nullptr) {
+        result.density = texels(density, format);
+        result.in_scattered = texels(in_scattered, format);
+        result.accumulated = texels(accumulated, format);
     }
-    if (esm_out.mapped != nullptr) {
-        result.esm.assign(esm_out.as<float>().begin(), esm_out.as<float>().end());
+    if (esm.mapped != nullptr) {
+        result.esm.assign(esm.as<float>().begin(), esm.as<float>().end());
     }
-    if (masks_out.mapped != nullptr) {
-        result.masks.assign(masks_out.as<std::uint32_t>().begin(), masks_out.as<std::uint32_t>().end());
+    if (masks.mapped != nullptr) {
+        result.masks.assign(masks.as<std::uint32_t>().begin(), masks.as<std::uint32_t>().end());
     }
-    return result;
+    return std::move(result);
 }
 
 } // namespace tyndall::volumetrics::test

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -69,9 +70,27 @@ protected:
 
     /// Runs one frame; the next call continues its history.
     [[nodiscard]] Result render(const Scene& scene);
+    /// The same of several views in one frame, in their order.
+    [[nodiscard]] std::vector<Result> render_views(std::span<const Scene> scenes);
     [[nodiscard]] Feature& feature() { return *feature_; }
 
 private:
+    /// Where a view's frame is read back to.
+    struct ReadBack {
+        [[nodiscard]] Result collect() &&; ///< after the frame has run
+
+        Result result;
+        VkFormat format = VK_FORMAT_UNDEFINED;
+        tyndall::test::HostBuffer color;
+        tyndall::test::HostBuffer density;
+        tyndall::test::HostBuffer in_scattered;
+        tyndall::test::HostBuffer accumulated;
+        tyndall::test::HostBuffer esm;
+        tyndall::test::HostBuffer masks;
+    };
+    [[nodiscard]] ReadBack declare_view(rg::GraphBuilder& graph, std::vector<rg::ImportBinding>& imports,
+                                        const Scene& scene, std::uint32_t view);
+
     std::unique_ptr<Feature> feature_;
 };
 

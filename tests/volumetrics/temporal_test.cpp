@@ -171,6 +171,7 @@ TEST_F(Temporal, TurningTheCameraLeavesScatteringAsItWas) {
 
 TEST_F(Temporal, FastTranslationRaisesTheWeightOfTheNewFrameWhereTheAngleChanges) {
     Scene scene = temporal_scene();
+    scene.inputs.settings.grid = {.width = 80, .height = 45, .slices = 32, .range_m = 64.0F, .shape_m = 16.0F};
     scene.inputs.settings.temporal.jitter = false;
     scene.inputs.settings.temporal.new_frame_weight = 0.001F;
     scene.inputs.sun =
@@ -188,16 +189,21 @@ TEST_F(Temporal, FastTranslationRaisesTheWeightOfTheNewFrameWhereTheAngleChanges
         const Result moved = at(2.0, false);
         const Result fresh = at(2.0, true);
         double worst = 0.0;
-        float oldest = 0.0F;
+        std::size_t forgotten = 0;
         for (std::size_t i = 0; i < fresh.in_scattered.size(); ++i) {
             const double exact = static_cast<double>(fresh.in_scattered[i].r);
             worst = std::max(worst, std::abs(static_cast<double>(moved.in_scattered[i].r) / exact - 1.0));
-            oldest = std::max(oldest, moved.in_scattered[i].a);
+            forgotten += moved.in_scattered[i].a < 4.0F ? 1U : 0U;
         }
-        std::printf("g %.1f, camera moved 2 m: off by %.3f at most, oldest %.1f frames\n", static_cast<double>(g),
-                    worst, static_cast<double>(oldest));
+        std::printf("g %.1f, camera moved 2 m: off by %.3f at most\n", static_cast<double>(g), worst);
         EXPECT_LE(worst, 0.2); // where light falls off by e^2; history as it was would be off by several times
-        EXPECT_EQ(oldest > 16.0F, g == 0.0F); // evenly scattered light is the same from everywhere
+        const double part = static_cast<double>(forgotten) / static_cast<double>(fresh.in_scattered.size());
+        std::printf("history of %.2f of the froxels nearly forgotten\n", part);
+        if (g == 0.0F) {
+            EXPECT_LT(part, 0.2); // evenly scattered light is the same from everywhere; what comes into view is new
+        } else {
+            EXPECT_GT(part, 0.5);
+        }
     }
 }
 

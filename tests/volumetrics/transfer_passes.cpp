@@ -15,7 +15,7 @@ VkImageSubresourceLayers subresource(VkImageAspectFlags aspect, std::uint32_t la
 
 } // namespace
 
-void upload(rg::GraphBuilder& graph, const char* pass_name, rg::Buffer source, rg::Image& image) {
+void upload(rg::GraphBuilder& graph, const std::string& pass_name, rg::Buffer source, rg::Image& image) {
     const rg::ImageDesc desc = *graph.describe(image);
     auto pass = graph.add_pass(pass_name, PassKind::transfer);
     pass.reads(source, Access::transfer_source).writes(image, Access::transfer_destination);
