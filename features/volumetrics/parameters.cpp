@@ -196,7 +196,10 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float
 
 glm::vec4 rendered_area(const FrameInputs& frame) {
     const glm::vec2 columns(frame.settings.grid.width, frame.settings.grid.height);
-    return {columns / glm::vec2(allocated_columns(frame)), 0.0F, 0.0F};
+    const glm::vec2 allocated(allocated_columns(frame));
+    // A little before the middle of the last column: samplers round coordinates, to a 256th of a texel or better.
+    const glm::vec2 last = (columns - 0.5F - 1.0F / 128.0F) / allocated;
+    return {columns / allocated, columns.x < allocated.x ? last.x : 1.0F, columns.y < allocated.y ? last.y : 1.0F};
 }
 
 /// Their number.
@@ -240,7 +243,7 @@ gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& 
     const double shape_m = effective_shape_m(grid);
     const double y = std::log1p(static_cast<double>(grid.range_m) / shape_m) / grid.slices;
     volume.slice = glm::vec4(shape_m * std::expm1(y), shape_m * std::expm1(0.5 * y), std::exp(y), std::exp(-y));
-    volume.area = glm::vec4(1.0F, 1.0F, 0.0F, 0.0F);
+    volume.area = glm::vec4(1.0F);
     volume.scale = glm::vec4(radiance_scale, 1.0F / radiance_scale, std::expm1(y), 0.0F);
     return volume;
 }

@@ -31,7 +31,7 @@ vec2 uv_of_column(ScatteringVolume volume, vec2 column) { return column / (volum
 
 // Where uv lies in the textures.
 vec2 texture_uv(ScatteringVolume volume, vec2 uv) {
-    return (uv * (volume.grid.xy - 1.0) + 0.5) / volume.grid.xy * volume.area.xy;
+    return min((uv * (volume.grid.xy - 1.0) + 0.5) / volume.grid.xy * volume.area.xy, volume.area.zw);
 }
 
 // How density changes over a slice of optical depth x, from that of a neighbour of optical depth x_neighbour at

@@ -19,7 +19,8 @@ struct ScatteringVolume {
     vec4 grid;   // x width, y height, z slices N; w 0
     vec4 slice;  // without a curve: x: depth of the first slice, m; y: depth at its middle t, m; z: length of a slice over that of the one
                  // before it, (1 + R / s)^(1 / N); w: 1 / z
-    vec4 area;   // xy: rendered part of the allocated grid in x and y, 1 where all of it is; zw 0
+    vec4 area;   // xy: rendered part of the allocated grid in x and y, 1 where all of it is; zw: largest coordinates there
+                 // that mix in no column which is not rendered
     vec4 scale;  // x: stored radiance is radiance times this; y: its reciprocal; z: length of a slice over that of the
                  // one before it, less 1; w 0
     DepthLaw law;

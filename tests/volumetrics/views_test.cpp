@@ -80,9 +80,9 @@ TEST_F(Views, APartOfTheImagesHoldsTheSameAsAllOfSmallerOnes) {
         scenes[1] = scenes[0];
         scenes[1].inputs.allocated_columns = {64, 30};
         const std::vector<Result> results = render_views(scenes);
-        // The sampler's weights are rounded otherwise.
+        // The last column is sampled a 128th of a column before its middle.
         for (std::size_t pixel = 0; pixel < results[0].color.size(); ++pixel) {
-            ASSERT_NEAR(results[0].color[pixel].g, results[1].color[pixel].g, 1e-4F * results[0].color[pixel].g);
+            ASSERT_NEAR(results[0].color[pixel].g, results[1].color[pixel].g, 2e-3F * results[0].color[pixel].g);
         }
         ASSERT_EQ(results[1].in_scattered.size(), 64U * 30U * 32U);
         for (std::size_t froxel = 0; froxel < results[0].in_scattered.size(); ++froxel) {
@@ -90,7 +90,7 @@ TEST_F(Views, APartOfTheImagesHoldsTheSameAsAllOfSmallerOnes) {
             const std::size_t y = froxel / 40 % 24;
             const std::size_t z = froxel / (40 * 24);
             const float expected = results[0].in_scattered[froxel].g;
-            ASSERT_NEAR(results[1].in_scattered[(z * 30 + y) * 64 + x].g, expected, 1e-4F * expected);
+            ASSERT_NEAR(results[1].in_scattered[(z * 30 + y) * 64 + x].g, expected, 2e-3F * expected);
         }
     }
     FrameInputs inputs = view_of(0.0, 0.0).inputs;
