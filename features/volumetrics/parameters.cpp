@@ -194,6 +194,22 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float
     return count;
 }
 
+/// Radiance that local lights in-scatter beside them, the largest of all: a decimetre from a light in the grid, at the
+/// grid's nearest place from one outside. `longest_m` holds the grid around the eye.
+double local_radiance(const FrameInputs& frame, double longest_m) {
+    double largest = 0.0;
+    for (const gpu::GpuLight& light : frame.lights) {
+        const double away_m = glm::length(glm::dvec3(light.position_range)) - longest_m;
+        const double nearest_m = std::max({away_m, static_cast<double>(light.direction_radius.w), 0.1});
+        const glm::vec4& candela = light.intensity_type;
+        const auto brightest = static_cast<double>(std::max({candela.x, candela.y, candela.z}));
+        if (away_m < static_cast<double>(light.position_range.w)) {
+            largest = std::max(largest, brightest / (nearest_m * nearest_m));
+        }
+    }
+    return largest * peak(phase_of(frame.medium));
+}
+
 glm::vec4 rendered_area(const FrameInputs& frame) {
     const glm::vec2 columns(frame.settings.grid.width, frame.settings.grid.height);
     const glm::vec2 allocated(allocated_columns(frame));
@@ -248,7 +264,7 @@ gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& 
     return volume;
 }
 
-float radiance_scale_for(const FrameInputs& frame) {
+float radiance_scale_for(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
     if (frame.settings.storage == StorageFormat::fp32) {
         return 1.0F;
     }
@@ -267,12 +283,22 @@ float radiance_scale_for(const FrameInputs& frame) {
     const double longest_m = static_cast<double>(frame.settings.grid.range_m) * std::hypot(1.0, slope_x, slope_y);
     brightest +=
         (1.0 + static_cast<double>(frame.medium.noise.amplitude)) * emitted_radiance_bound(frame.medium, longest_m);
-    const double largest = 32768.0; // half of fp16's, which leaves room for local lights
-    const double smallest = 512.0;  // radiance of fog a ten-millionth as bright still has all of fp16's digits
+    const double local = local_radiance(frame, longest_m);
+    brightest += local;
+    const double largest = 32768.0; // half of fp16's, which leaves room right beside local lights
+    // Radiance of fog a ten-millionth as bright still has all of fp16's digits; of light that falls off from a lamp,
+    // more.
+    const double smallest = local > 0.5 * brightest ? 16384.0 : 512.0;
+    if (before && before->storage == StorageFormat::fp16) {
+        const auto kept = static_cast<double>(before->volume.scale.x);
+        if (brightest * kept <= largest && brightest * kept >= smallest / 16.0) {
+            return before->volume.scale.x;
+        }
+    }
     double scale = 1.0;
     if (brightest > largest) {
-        scale = std::exp2(-std::ceil(std::log2(brightest / largest)));
-    } else if (brightest > 0.0 && brightest < smallest && frame.lights.empty()) {
+        scale = std::exp2(-std::min(std::ceil(std::log2(brightest / largest)), 100.0));
+    } else if (brightest > 0.0 && brightest < smallest) {
         scale = std::exp2(std::min(std::floor(std::log2(smallest / brightest)), 100.0));
     }
     return static_cast<float>(scale);
@@ -323,7 +349,7 @@ bool is_perspective(const Camera& camera) {
 
 gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
     const Medium& medium = frame.medium;
-    const float radiance_scale = radiance_scale_for(frame);
+    const float radiance_scale = radiance_scale_for(frame, before);
     // The densest at a quarter of fp16's largest, since noise at most doubles it; the thinnest 1e11 times below.
     const float density_scale = 16384.0F / std::max(extinction_bound(medium), 1e-20F);
     const float emission_scale = 16384.0F / std::max(emission_bound(medium), 1e-20F);

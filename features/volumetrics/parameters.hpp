@@ -33,8 +33,11 @@ struct FrameMemory {
 /// The volume that the grid settings and a camera span. `radiance_scale` is what radiance is stored times.
 [[nodiscard]] gpu::ScatteringVolume scattering_volume(const GridSettings& grid, const Camera& camera,
                                                       float radiance_scale);
-/// A power of two, 1 unless the sun's forward peak would leave the range of fp16.
-[[nodiscard]] float radiance_scale_for(const FrameInputs& frame);
+/// A power of two by which radiance is stored: 1 unless the brightest light would leave the range of fp16, or the fog
+/// be too dim for its digits. The frame before's is kept while it serves, so that it does not change with every
+/// flicker.
+[[nodiscard]] float radiance_scale_for(const FrameInputs& frame,
+                                       const std::optional<FrameMemory>& before = std::nullopt);
 
 [[nodiscard]] gpu::LightClusters light_clusters(const GridSettings& grid, std::uint32_t light_count,
                                                 const gpu::DepthLaw& law);

@@ -143,9 +143,6 @@ TEST(Parameters, DimFogAndThinFogKeepTheDigitsOfHalfPrecision) {
     const double scale = static_cast<double>(radiance_scale_for(frame));
     EXPECT_GE(1e-9 * scale, 256.0);
     EXPECT_LE(1e-9 * scale, 512.0);
-    frame.lights.resize(1); // whose radiance is not known here
-    EXPECT_EQ(radiance_scale_for(frame), 1.0F);
-    frame.lights.clear();
     frame.medium.ambient_radiance = glm::vec3(0.0F);
     EXPECT_EQ(radiance_scale_for(frame), 1.0F);
 
@@ -158,6 +155,37 @@ TEST(Parameters, DimFogAndThinFogKeepTheDigitsOfHalfPrecision) {
     EXPECT_NEAR(1e-8 * density_scale(), 16384.0, 1.0);
     frame.medium.volumes[0].half_size_m.y = 1e-6F;
     EXPECT_NEAR(1e6 * density_scale(), 16384.0, 1.0);
+}
+
+TEST(Parameters, RadianceScaleIsThatOfTheLocalLightsToo) {
+    FrameInputs frame;
+    frame.camera.clip_from_view = perspective(1.0, 0.5625, 0.1, 0.0);
+    frame.medium.homogeneous.extinction_per_m = 0.01F;
+    frame.lights = {{.position_range = {0.0F, 0.0F, -10.0F, 1e6F}, .direction_radius = {0.0F, -1.0F, 0.0F, 0.02F}}};
+    const auto scale_of = [&](float candela, const std::optional<FrameMemory>& before = std::nullopt) {
+        frame.lights[0].intensity_type = glm::vec4(glm::vec3(candela), 0.0F);
+        return static_cast<double>(radiance_scale_for(frame, before));
+    };
+    for (const float candela : {1e-6F, 1.0F, 1e9F}) {
+        const double at_a_decimetre = static_cast<double>(candela) * 100.0 / (4.0 * 3.14159265358979);
+        EXPECT_LE(at_a_decimetre * scale_of(candela), 32768.0);
+        EXPECT_GT(at_a_decimetre * scale_of(candela), 8191.0);
+    }
+    // Out of reach, or far outside of the grid, it says little.
+    frame.lights[0].position_range.w = 1e3F;
+    frame.lights[0].position_range.z = -2e3F;
+    EXPECT_EQ(scale_of(1e9F), 1.0);
+    frame.lights[0].position_range = {0.0F, 0.0F, -1e5F, 1e6F};
+    EXPECT_GT(scale_of(1e9F), 1.0);
+    // A flicker leaves it as it is; a great change does not.
+    frame.lights[0].position_range = {0.0F, 0.0F, -10.0F, 1e6F};
+    frame.lights[0].intensity_type = glm::vec4(glm::vec3(1e4F), 0.0F);
+    const FrameMemory before = memory_of(frame, volumetric_parameters(frame, std::nullopt));
+    const double kept = static_cast<double>(before.volume.scale.x);
+    EXPECT_EQ(scale_of(5e3F, before), kept);
+    EXPECT_NE(scale_of(5e3F), kept);
+    EXPECT_LT(scale_of(1e5F, before), kept);
+    EXPECT_GT(scale_of(1.0F, before), kept);
 }
 
 TEST(Parameters, NoiseStaysPreciseFarFromTheOriginAndLate) {
