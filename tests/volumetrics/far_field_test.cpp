@@ -72,6 +72,24 @@ TEST_F(FarField, ContinuesWhatALongerRangeHolds) {
     EXPECT_LE(worst, 5e-3);
 }
 
+TEST_F(FarField, TakesTheAlbedoOfTheFogThatIsSeen) {
+    // White fog everywhere, blue fog that lies low: the mean over one optical depth of the former stands for the ray.
+    Scene scene = hazy_scene();
+    scene.inputs.medium.homogeneous.albedo = glm::vec3(1.0F);
+    scene.inputs.medium.height.albedo = {0.2F, 0.5F, 0.9F};
+    scene.depth_m = [](std::uint32_t x, std::uint32_t y) {
+        return 2.0 * std::pow(150.0, ((x * 37 + y * 101) % 509) / 508.0);
+    };
+    const Result near = at_range(scene, 20.0F);
+    const Result far = at_range(scene, 300.0F);
+    const double worst = largest_relative_difference(near, far);
+    scene.inputs.medium.height.albedo = glm::vec3(1.0F);
+    const double all_white = largest_relative_difference(at_range(scene, 300.0F), far);
+    std::printf("albedos 1 and 0.2: %.2e; if all were white: %.2f\n", worst, all_white);
+    EXPECT_LE(worst, 0.12);
+    EXPECT_GT(all_white, 0.5);
+}
+
 TEST_F(FarField, HasNoSeamAtTheRange) {
     Scene scene = hazy_scene();
     const auto at = [&](double depth_m) {
