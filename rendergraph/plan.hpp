@@ -68,7 +68,7 @@ enum class QueueReason : std::uint8_t {
     default_graphics,
     asked_for_but_no_such_queue,
     async_switched_off,
-    import_ordered_by_queue, ///< it touches an import whose last use only the first queue comes after
+    import_ordered_by_queue, ///< it touches an import; only the first queue is ordered with the host's use of it
     import_not_shared,       ///< it touches an import that other families use too, and that the host does not share
     forbidden,               ///< the pass may not run on any other queue that could
     overlap_pays,            ///< there it runs beside other work, and the frame is predicted to be shorter

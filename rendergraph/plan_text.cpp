@@ -94,7 +94,7 @@ std::string why_queue(const PlannedPass& pass) {
     case QueueReason::asked_for_but_no_such_queue: return "another queue asked for, but there is none";
     case QueueReason::async_switched_off: return "asynchronous queues are switched off";
     case QueueReason::import_ordered_by_queue:
-        return "only the first queue comes after the last use of an import that it touches";
+        return "only the first queue is ordered with the host's use of an import that it touches";
     case QueueReason::import_not_shared: return "an import that it touches is not shared between families";
     case QueueReason::forbidden: return "every other queue that could is forbidden";
     case QueueReason::overlap_pays: return "beside other work there, the frame is shorter";

@@ -31,13 +31,15 @@ Choice asked_queue(const PassDesc& pass, const QueueTopology& topology, bool asy
     return {0, QueueReason::asked_for_but_no_such_queue};
 }
 
-/// Only the first queue comes after the import's last use.
+/// Only the first queue comes after the host's last use of the import, or before its next one.
 bool ordered_by_queue(const GraphDesc& graph, const ResourceDesc& resource) {
     if (resource.import == none) {
         return false;
     }
+    const auto on_device = [](VkPipelineStageFlags2 stages) { return (stages & ~VK_PIPELINE_STAGE_2_HOST_BIT) != 0; };
     const ImportDesc& import = graph.imports[resource.import];
-    return !import.waits_semaphore && (import.initial_stages & ~VK_PIPELINE_STAGE_2_HOST_BIT) != 0;
+    return (!import.waits_semaphore && on_device(import.initial_stages)) ||
+           (import.has_final && !import.signals_semaphore && on_device(import.final_stages));
 }
 
 bool touches_import_ordered_by_queue(const GraphDesc& graph, const PassDesc& pass) {

@@ -268,9 +268,7 @@ private:
     }
 
     void add_sources(Dependency& d, const Before& before, std::uint32_t consumer_queue, const Return& returned) const {
-        // What the host did on another queue reaches this one through a semaphore, which all commands here chain to.
-        const bool nameable = queue_has(topology_.queues[consumer_queue].capabilities, before.host_stages);
-        d.src_stages = nameable ? before.host_stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        d.src_stages = nameable(topology_.queues[consumer_queue].capabilities, before.host_stages);
         d.src_access = before.host_access & any_write;
         d.local_stages = d.src_stages;
         d.local_access = d.src_access;
@@ -375,7 +373,7 @@ private:
         d.src_queue = d.dst_queue = last.queue;
         add_sources(d, before, last.queue, {});
         d.src_queue = last.queue; // the others are ordered before the last use
-        d.dst_stages = stages;
+        d.dst_stages = nameable(topology_.queues[last.queue].capabilities, stages);
         d.dst_access = access;
         d.old_layout = before.layout;
         d.new_layout = transition ? after.layout : before.layout;

@@ -22,6 +22,11 @@ inline constexpr VkAccessFlags2 any_write =
     return (capabilities & can_graphics) != 0 || (stages & ~there) == 0;
 }
 
+/// The stages, where the queue has them; else all commands, which what another queue does is chained to by a semaphore.
+[[nodiscard]] inline VkPipelineStageFlags2 nameable(std::uint8_t capabilities, VkPipelineStageFlags2 stages) {
+    return queue_has(capabilities, stages) ? stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+}
+
 /// Uses of one cell that need nothing of each other.
 struct Group {
     Uses uses;

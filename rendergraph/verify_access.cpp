@@ -128,10 +128,12 @@ bool Replay::available_in(const Event& event, const SourceScope& source) const {
                        [&](const Point& point) { return covers(source.ordered.data(), point); });
 }
 
-bool Replay::available(const Event& event, const Toucher& toucher) const {
+bool Replay::available(const Event& event, const Toucher& toucher, bool same_content) const {
     if (toucher.source != nullptr) {
+        // A barrier of a resource reaches what was written through that resource; of shared memory, all of it.
+        const bool reaches = same_content || toucher.effect->d->hazard == Hazard::aliased_memory;
         return available_in(event, *toucher.source) ||
-               (event.written != 0 && covers_access(toucher.effect->src_access, event.written));
+               (reaches && event.written != 0 && covers_access(toucher.effect->src_access, event.written));
     }
     return event.written == 0 || order_.available(event.at, toucher.queue, toucher.stages) ||
            std::any_of(event.available_from.begin(), event.available_from.end(),
@@ -165,7 +167,7 @@ void Replay::check_against(const Event& event, std::uint32_t frame, const Touche
     if (!ordered(event, toucher)) {
         report(ViolationCode::race, toucher.pass, other, resource,
                what() + (toucher.source != nullptr ? " is not" : " without being") + " ordered after " + who());
-    } else if (toucher.writes && !available(event, toucher)) {
+    } else if (toucher.writes && !available(event, toucher, same_content)) {
         report(ViolationCode::not_visible, toucher.pass, other, resource,
                what() + ", but what " + who() + " wrote to these bytes is not available before");
     } else if (same_content && toucher.source == nullptr && !visible(event, toucher)) {

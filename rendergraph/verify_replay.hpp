@@ -56,7 +56,7 @@ private:
     void check_against(const Event& event, std::uint32_t frame, const Toucher& toucher, std::uint32_t resource,
                        bool same_content);
     [[nodiscard]] bool ordered(const Event& event, const Toucher& toucher) const;
-    [[nodiscard]] bool available(const Event& event, const Toucher& toucher) const;
+    [[nodiscard]] bool available(const Event& event, const Toucher& toucher, bool same_content) const;
     [[nodiscard]] bool available_in(const Event& event, const SourceScope& source) const;
     [[nodiscard]] bool visible(const Event& event, const Toucher& toucher) const;
 

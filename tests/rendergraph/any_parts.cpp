@@ -77,13 +77,16 @@ ImportDesc any_import(Bits& bits, const QueueTopology& topology, bool image) {
                                   : bits.one_of({VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                                  VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
         import.signals_semaphore = bits.below(3) == 0;
-        if (!import.signals_semaphore) {
-            import.final_stages = bits.one_of(
-                {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_PIPELINE_STAGE_2_HOST_BIT, VkPipelineStageFlags2{0}});
-            import.final_access = import.final_stages == VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT
-                                      ? bits.one_of({VK_ACCESS_2_TRANSFER_READ_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT})
-                                  : import.final_stages != 0 ? VK_ACCESS_2_HOST_READ_BIT
-                                                             : VkAccessFlags2{0};
+        import.final_stages =
+            bits.one_of({VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                         VK_PIPELINE_STAGE_2_HOST_BIT, VkPipelineStageFlags2{0}});
+        switch (import.final_stages) {
+        case VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT:
+            import.final_access = bits.one_of({VK_ACCESS_2_TRANSFER_READ_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT});
+            break;
+        case VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT: import.final_access = VK_ACCESS_2_SHADER_STORAGE_READ_BIT; break;
+        case VK_PIPELINE_STAGE_2_HOST_BIT: import.final_access = VK_ACCESS_2_HOST_READ_BIT; break;
+        default: break;
         }
         if (bits.below(4) == 0) {
             import.final_family = any_family(bits, topology);

@@ -59,6 +59,23 @@ bool share_bytes(const Plan& plan, std::uint32_t a, std::uint32_t b) {
 
 namespace {
 
+/// What a queue without these abilities cannot name; it says all commands for what other queues did.
+bool has_stages(std::uint8_t capabilities, VkPipelineStageFlags2 stages) {
+    constexpr VkPipelineStageFlags2 drawing =
+        VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
+        VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
+        VK_PIPELINE_STAGE_2_PRE_RASTERIZATION_SHADERS_BIT | VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
+        VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT |
+        VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT |
+        VK_PIPELINE_STAGE_2_RESOLVE_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT;
+    constexpr VkPipelineStageFlags2 computing =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT |
+        VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR | VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR;
+    const bool draws = (capabilities & can_graphics) != 0;
+    const bool computes = draws || (capabilities & can_compute) != 0;
+    return (draws || (stages & drawing) == 0) && (computes || (stages & computing) == 0);
+}
+
 class Lister {
 public:
     Lister(const GraphDesc& graph, const Plan& plan) : graph_(graph), plan_(plan) {}
@@ -92,7 +109,9 @@ public:
             }
             for (const std::uint32_t d : exits_of(b)) {
                 const Dependency& r = plan_.dependencies[d];
-                after.barriers.push_back({d, r.src_stages, r.dst_stages, r.src_access, r.dst_access,
+                const bool named = has_stages(plan_.topology.queues[batch.queue].capabilities, r.src_stages);
+                after.barriers.push_back({d, named ? r.src_stages : all_commands, r.dst_stages,
+                                          named ? r.src_access : VK_ACCESS_2_MEMORY_WRITE_BIT, r.dst_access,
                                           r.transfers_ownership || r.old_layout != r.new_layout});
             }
             commands_.push_back(std::move(after));

@@ -1,6 +1,7 @@
 // The checker: silent on what compile makes, and not silent on what is broken on purpose.
 #include "rendergraph/verify.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -121,6 +122,33 @@ TEST(Verify, RandomFramesSayEverything) {
     for (std::uint8_t h = 0; h <= static_cast<std::uint8_t>(Hazard::history_rest); ++h) {
         EXPECT_GE(seen[std::string(name_of(static_cast<Hazard>(h)))], 10U) << name_of(static_cast<Hazard>(h));
     }
+}
+
+/// An image is overwritten while another has been written in its bytes: the barrier of the first says nothing of what
+/// was written through the second, though both were written by copies.
+TEST(Verify, ATransitionOfOneResourceDoesNotFlushAnother) {
+    GraphBuilder graph;
+    const ImageDesc desc{.format = VK_FORMAT_R8G8B8A8_UNORM, .extent = {64, 64, 1}};
+    Image gone = graph.create_image("gone", desc);
+    Image kept = graph.create_image("kept", desc);
+    Image other = graph.create_image("other", desc);
+    const auto copy_to = [&](const char* pass, Image& image) {
+        graph.add_pass(pass, PassKind::transfer).writes(image, Access::transfer_destination).has_side_effect("shown");
+    };
+    copy_to("fill kept", kept);
+    copy_to("fill gone", gone);
+    copy_to("fill other", other);
+    graph.add_pass("draw kept", PassKind::graphics).writes(kept, Access::color_attachment).has_side_effect("shown");
+    const DeclaredGraph declared = graph.finish();
+    Plan plan = compiled(declared.desc, one_queue());
+    EXPECT_EQ(text(verify(declared.desc, plan)), "");
+    ASSERT_EQ(plan.placements[other.resource].offset_bytes, plan.placements[gone.resource].offset_bytes);
+    plan.placements[other.resource].offset_bytes = plan.placements[kept.resource].offset_bytes;
+    const std::vector<Violation> found = verify(declared.desc, plan);
+    const bool unflushed = std::any_of(found.begin(), found.end(), [&](const Violation& v) {
+        return v.code == ViolationCode::not_visible && v.resource == kept.resource;
+    });
+    EXPECT_TRUE(unflushed) << text(found);
 }
 
 TEST(Verify, EveryDependencyOfTheFogFrameMatters) {
