@@ -80,9 +80,9 @@ struct ImportDesc {
     VkAccessFlags2 initial_access = 0;
     std::uint32_t initial_family = VK_QUEUE_FAMILY_IGNORED; ///< owner on the way in; IGNORED: whoever uses it first
     bool waits_semaphore = false;                           ///< the host binds a semaphore that the first use waits for
-    // On the way out. Stages and access mask of the next use are the destination of a barrier, where it will be submitted
-    // to the first queue and nothing else orders it; likewise the passes stay there. 0 where the host waits for a fence
-    // or a semaphore, and where the next use is in a frame of the same executor.
+    // On the way out. Stages and access mask of the next use are the destination of a barrier, where it will be
+    // submitted to the first queue and nothing else orders it; likewise the passes stay there. 0 where the host waits
+    // for a fence or a semaphore, and where the next use is in a frame of the same executor.
     bool has_final = false; ///< the frame must leave it in `final_*`; makes its last writer a root
     VkImageLayout final_layout = VK_IMAGE_LAYOUT_UNDEFINED;
     VkPipelineStageFlags2 final_stages = 0;

@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
     for (const Fault fault : {Fault::drop_barrier, Fault::narrow_source_stages, Fault::narrow_destination_stages,
                               Fault::narrow_source_access, Fault::narrow_destination_access, Fault::drop_wait,
                               Fault::renumber_wait, Fault::overlap_bytes, Fault::swap_passes, Fault::retarget_queue}) {
-        good = speaks_for(fault, number(2, 4)) && good;
+        good = speaks_for(fault, number(2, 8)) && good;
     }
     return good ? 0 : 1;
 }
