@@ -245,6 +245,34 @@ TEST_F(Change, OfSunAmbientAndPhaseIsSeenWithinEightFrames) {
     }
 }
 
+TEST_F(Change, OfAMediumIsThereInTheNextFrameAndCostsNoHistory) {
+    const LocalVolume cloud{.center_m = {0.0F, 0.0F, -12.0F}, .half_size_m = glm::vec3(3.0F), .extinction_per_m = 0.5F};
+    const std::vector<std::pair<const char*, std::function<void(Medium&)>>> changes{
+        {"denser", [](Medium& m) { m.homogeneous.extinction_per_m = 0.05F; }},
+        {"height fog", [](Medium& m) { m.height.extinction_per_m = 0.1F; }},
+        {"a volume goes", [](Medium& m) { m.volumes.clear(); }},
+        {"a volume moves", [](Medium& m) { m.volumes[0].center_m.x = 4.0F; }},
+        {"emission", [](Medium& m) { m.homogeneous.emission_per_m = glm::vec3(0.01F); }},
+    };
+    for (const auto& [name, change] : changes) {
+        Scene scene = lit_scene();
+        scene.inputs.medium.volumes = {cloud};
+        scene.lights = {lamp({-4.0F, 1.0F, -14.0F}, 8.0F, 50.0F)};
+        for (int i = 0; i < 4; ++i) {
+            (void)render(scene);
+        }
+        change(scene.inputs.medium);
+        const Result next = render(scene);
+        EXPECT_GT(next.in_scattered[1000].a, 4.0F) << name;
+        scene.inputs.cut = true;
+        const Result fresh = render(scene);
+        EXPECT_EQ(next.density, fresh.density) << name;
+        for (std::size_t i = 0; i < fresh.color.size(); ++i) {
+            ASSERT_NEAR(next.color[i].r, fresh.color[i].r, 1e-5F * fresh.color[i].r) << name;
+        }
+    }
+}
+
 /// A light that moves every frame: how far behind it the brightest place of the fog is.
 TEST_F(Change, FogFollowsALightThatMoves) {
     Scene scene = lit_scene();
