@@ -38,29 +38,41 @@ float far_height_optical_depth(FarField far, float a, float climb, float length_
     return far.height.w * length_m * mean_height_density(a, a + climb * length_m, falloff);
 }
 
+// 1 - e^-tau.
+float scattered_part(float tau, float attenuation) {
+    return mix(1.0 - attenuation, tau * phi1(tau, attenuation), tau < 0.25);
+}
+
+// Of a piece with these optical depths of the homogeneous and the height fog.
+vec3 mean_albedo(FarField far, vec2 taus) {
+    return mix(far.homogeneous.rgb, far.height.rgb, taus.y / max(taus.x + taus.y, 1e-30));
+}
+
 // The path from `start` (view space, m) in direction `slope`, along which view depth grows by 1, over depth_m > 0.
 // Source and extinction are those of the froxels: L = J (1 - e^-tau), J constant along the path. Where the two fogs'
-// albedos differ, J takes their mean weighted with optical depth over at most one optical depth of the homogeneous fog,
-// in which most of what is seen lies.
+// albedos differ, J takes their mean weighted with optical depth over half an optical depth of the homogeneous fog, and
+// that of the rest behind it.
 FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
     float stretch = length(slope);
     vec3 ray = slope / stretch;
     float length_m = min(depth_m * stretch, 1e30);
     float height = dot(far.up.xyz, start) + far.up.w;
     float climb = dot(far.up.xyz, ray);
-    float seen_m = min(length_m, 1.0 / max(far.homogeneous.w, 1e-30));
-    float seen_homogeneous = far.homogeneous.w * seen_m;
-    float seen_height = far_height_optical_depth(far, height, climb, seen_m);
-    float part = seen_height / max(seen_height + seen_homogeneous, 1e-30);
-    vec3 albedo = mix(far.homogeneous.rgb, far.height.rgb, part);
-
-    float tau = far.homogeneous.w * length_m + far_height_optical_depth(far, height, climb, length_m);
+    float near_m = min(length_m, 0.5 / max(far.homogeneous.w, 1e-30));
+    vec2 near = vec2(far.homogeneous.w * near_m, far_height_optical_depth(far, height, climb, near_m));
+    vec2 all = vec2(far.homogeneous.w * length_m, far_height_optical_depth(far, height, climb, length_m));
+    vec2 behind = max(all - near, 0.0);
+    float tau = all.x + all.y;
     float phase = phase_of_terms(far.phase, far.sun_direction.xyz, -ray);
     vec3 directed = far.ambient_x.rgb * ray.x + far.ambient_y.rgb * ray.y + far.ambient_z.rgb * ray.z;
     vec3 arriving = far.ambient.rgb + directed + far.sun_illuminance.rgb * phase;
     float attenuation = exp(-tau);
-    float scattered = mix(1.0 - attenuation, tau * phi1(tau, attenuation), tau < 0.25);
-    return FarFog(albedo * arriving * scattered, attenuation);
+    float near_tau = near.x + near.y;
+    float near_attenuation = exp(-near_tau);
+    float scattered = scattered_part(tau, attenuation);
+    float scattered_near = min(scattered_part(near_tau, near_attenuation), scattered);
+    vec3 albedo = mean_albedo(far, near) * scattered_near + mean_albedo(far, behind) * (scattered - scattered_near);
+    return FarFog(albedo * arriving, attenuation);
 }
 
 #endif
