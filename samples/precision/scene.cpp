@@ -1,6 +1,7 @@
 #include "samples/precision/scene.hpp"
 
 #include <array>
+#include <span>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -58,6 +59,33 @@ engine::Light make_light(const reference::Light& light) {
     return out;
 }
 
+std::vector<reference::Triangle> triangles_of(std::span<const Surface> surfaces) {
+    std::vector<reference::Triangle> triangles;
+    for (const Surface& surface : surfaces) {
+        for (const auto& quad : surface.quads) {
+            triangles.push_back({{quad[0], quad[1], quad[2]}, surface.albedo, glm::dvec3(0.0)});
+            triangles.push_back({{quad[0], quad[2], quad[3]}, surface.albedo, glm::dvec3(0.0)});
+        }
+    }
+    return triangles;
+}
+
+/// Where they are; their colours stand in textures.
+std::vector<reference::Triangle> triangles_of(const engine::Scene& scene) {
+    std::vector<reference::Triangle> triangles;
+    for (const engine::Instance& instance : scene.instances) {
+        const engine::Primitive& primitive = scene.primitives[instance.primitive];
+        const auto corner_at = [&](std::size_t i) {
+            const glm::dvec4 local(glm::dvec3(primitive.positions[primitive.indices[i]]), 1.0);
+            return glm::dvec3(instance.world_from_object * local);
+        };
+        for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+            triangles.push_back({{corner_at(i), corner_at(i + 1), corner_at(i + 2)}, glm::dvec3(0.0), glm::dvec3(0.0)});
+        }
+    }
+    return triangles;
+}
+
 } // namespace
 
 Surface make_box(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& albedo) {
@@ -81,18 +109,12 @@ Surface make_room(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec
 }
 
 reference::Scene reference_scene(const PrecisionScene& scene, const Physics& physics) {
-    std::vector<reference::Triangle> triangles;
-    for (const Surface& surface : scene.surfaces) {
-        for (const auto& quad : surface.quads) {
-            triangles.push_back({{quad[0], quad[1], quad[2]}, surface.albedo, glm::dvec3(0.0)});
-            triangles.push_back({{quad[0], quad[2], quad[3]}, surface.albedo, glm::dvec3(0.0)});
-        }
-    }
     reference::Scene truth;
-    truth.geometry = reference::Geometry(std::move(triangles));
+    truth.geometry = reference::Geometry(scene.drawn ? triangles_of(*scene.drawn) : triangles_of(scene.surfaces));
     truth.medium = scene.fog.medium;
     truth.time_s = scene.time_s;
     truth.sun = scene.sun;
+    truth.fills = scene.fills;
     truth.lights = scene.lights;
     for (reference::Light& light : truth.lights) {
         light.casts_shadows = light.casts_shadows && physics.local_shadows;
@@ -103,6 +125,9 @@ reference::Scene reference_scene(const PrecisionScene& scene, const Physics& phy
 }
 
 engine::Scene engine_scene(const PrecisionScene& scene) {
+    if (scene.drawn) {
+        return *scene.drawn;
+    }
     engine::Scene out;
     for (const Surface& surface : scene.surfaces) {
         const auto index = static_cast<std::uint32_t>(out.primitives.size());

@@ -33,10 +33,16 @@ struct PrecisionScene {
     double time_s = 0.0;
     reference::Camera camera;
     std::optional<reference::DirectionalLight> sun;
+    std::vector<reference::DirectionalLight> fills; ///< without shadows, on surfaces only
     std::vector<reference::Light> lights;
     reference::Surroundings surroundings;
     std::size_t pixels = 0;  ///< that the reference computes, at random; 0: all
     double tolerance = 1e-7; ///< of the reference, relative, a pixel each
+
+    /// Of a file: what is drawn instead of `surfaces`, with textures that only the engine reads; what a pixel shows of
+    /// it is then taken from the engine (samples/tyndall/precision_surfaces.hpp).
+    std::optional<engine::Scene> drawn;
+    std::string identity; ///< a hash of the file's geometry and fog
 };
 
 /// What the truth may leave out, to tell which cause an error has.

@@ -90,7 +90,8 @@ struct PrecisionConfiguration {
 /// Every combination of the lists is measured; of one that is empty, the ladder's values or, without a sweep, what the
 /// scene itself asks for (samples/tyndall/precision_ladder.hpp).
 struct PrecisionArguments {
-    std::string scene = "all";
+    std::string scene = "all";                 ///< or "file": `file` only
+    std::optional<std::filesystem::path> file; ///< a glTF scene beside the others
     Size size{320, 180};
     std::uint32_t frames = 8; ///< the first and the last of them are judged
     std::vector<volumetrics::Integrator> integrators;
@@ -108,7 +109,7 @@ struct PrecisionArguments {
     std::string device;
     bool json = false;
 };
-/// What --scene can name besides "all".
+/// What --scene can name besides "all" and "file".
 [[nodiscard]] std::vector<std::string> precision_scene_names();
 
 struct StabilityArguments {

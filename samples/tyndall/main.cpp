@@ -63,10 +63,11 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, Pre
                                                                    {"prefiltered", SunVisibility::prefiltered},
                                                                    {"lit_fraction", SunVisibility::lit_fraction}};
     std::vector<std::string> scenes = precision_scene_names();
-    scenes.emplace_back("all");
+    scenes.insert(scenes.end(), {"file", "all"});
     command.add_option("--scene", precision.scene, "scene to measure")
         ->check(CLI::IsMember(scenes))
         ->capture_default_str();
+    command.add_option("--file", precision.file, "a glTF scene, its fog beside it, to measure with the others");
     command.add_option("--size", texts.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
     command.add_option("--frames", precision.frames, "jittered frames; the first and the last are judged")
         ->check(CLI::Range(2U, 10000U))

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "engine/file_io.hpp"
+#include "samples/precision/file_scene.hpp"
 #include "samples/precision/orders.hpp"
 #include "samples/precision/scene.hpp"
 #include "samples/tyndall/arguments.hpp"
@@ -14,6 +15,7 @@
 #include "samples/tyndall/precision_files.hpp"
 #include "samples/tyndall/precision_ladder.hpp"
 #include "samples/tyndall/precision_report.hpp"
+#include "samples/tyndall/precision_surfaces.hpp"
 #include "samples/tyndall/precision_truths.hpp"
 #include "samples/tyndall/progress.hpp"
 
@@ -27,6 +29,32 @@ void make_black(PrecisionScene& scene) {
     for (Surface& surface : scene.surfaces) {
         surface.albedo = glm::dvec3(0.0);
     }
+    if (scene.drawn) {
+        for (engine::Material& material : scene.drawn->materials) {
+            material.base_color_factor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+            material.emissive = glm::vec3(0.0F);
+        }
+    }
+}
+
+Expected<std::vector<PrecisionScene>> chosen_scenes(const PrecisionArguments& arguments) {
+    std::vector<PrecisionScene> scenes;
+    for (const PrecisionScene& scene : precision_scenes()) {
+        if (arguments.scene == "all" || arguments.scene == scene.name) {
+            scenes.push_back(scene);
+        }
+    }
+    if (arguments.scene == "file" && !arguments.file) {
+        return tl::unexpected(std::string("--scene file needs --file SCENE.gltf"));
+    }
+    if (arguments.file && (arguments.scene == "all" || arguments.scene == "file")) {
+        Expected<PrecisionScene> loaded = load_precision_scene(*arguments.file);
+        if (!loaded) {
+            return tl::unexpected(loaded.error());
+        }
+        scenes.push_back(std::move(*loaded));
+    }
+    return scenes;
 }
 
 Expected<void> write(const std::filesystem::path& path, const std::string& text) {
@@ -60,7 +88,16 @@ Expected<Bench> make_bench(const PrecisionArguments& arguments, const engine::De
                 .truths = {},
                 .yardstick = {},
                 .yardstick_ms = {}};
-    auto truths = exact_pictures(bench.scene, size, bench.pixels, arguments.airlight, arguments.folder,
+    std::vector<std::optional<reference::SurfacePoint>> surfaces;
+    if (bench.scene.drawn) {
+        progress.show(bench.scene.name + ", what its pixels show");
+        auto drawn = drawn_surfaces(device, bench.scene, arguments.size, bench.pixels);
+        if (!drawn) {
+            return tl::unexpected(drawn.error());
+        }
+        surfaces = std::move(*drawn);
+    }
+    auto truths = exact_pictures(bench.scene, size, bench.pixels, surfaces, arguments.airlight, arguments.folder,
                                  [&](const std::string& picture, double done) {
                                      progress.show(bench.scene.name + ", exact picture (" + picture + "), " +
                                                    std::to_string(static_cast<int>(100.0 * done)) + " %");
@@ -183,13 +220,14 @@ int run_precision(const PrecisionArguments& arguments) {
     if (!device) {
         return fail(arguments.device.empty() ? exit_failed : exit_bad_input, device.error().message);
     }
+    const Expected<std::vector<PrecisionScene>> scenes = chosen_scenes(arguments);
+    if (!scenes) {
+        return fail(exit_bad_input, scenes.error());
+    }
     Study study;
     {
         Progress progress;
-        for (const PrecisionScene& scene : precision_scenes()) {
-            if (arguments.scene != "all" && arguments.scene != scene.name) {
-                continue;
-            }
+        for (const PrecisionScene& scene : *scenes) {
             if (const auto done = study_scene(arguments, *device, scene, study, progress); !done) {
                 return fail(exit_bad_input, done.error());
             }

@@ -1,9 +1,8 @@
 #include "samples/tyndall/precision_bench.hpp"
 
-#include <span>
-
 #include "samples/precision/metrics.hpp"
 #include "samples/tyndall/precision_ladder.hpp"
+#include "samples/tyndall/precision_surfaces.hpp"
 #include "samples/tyndall/timing.hpp"
 
 namespace tyndall::samples {
@@ -11,15 +10,6 @@ namespace {
 
 template <typename T>
 using Expected = tl::expected<T, std::string>;
-
-std::vector<glm::dvec3> choose(const engine::Pixels<float>& image, std::span<const reference::Pixel> pixels) {
-    std::vector<glm::dvec3> values;
-    for (const reference::Pixel& pixel : pixels) {
-        const float* rgb = image.values.data() + 3 * (std::size_t{pixel.y} * image.width + pixel.x);
-        values.emplace_back(rgb[0], rgb[1], rgb[2]);
-    }
-    return values;
-}
 
 } // namespace
 
@@ -97,7 +87,7 @@ Expected<Measurement> measure(Bench& bench, const PrecisionConfiguration& config
         }
         if (judged) {
             made.last = run->radiance();
-            const std::vector<glm::dvec3> found = choose(made.last, bench.pixels);
+            const std::vector<glm::dvec3> found = values_at(made.last, bench.pixels);
             for (const TruthImage& image : bench.truths) {
                 made.rows.push_back({.scene = bench.scene.name,
                                      .configuration = configuration,

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <system_error>
 
 #include <glm/geometric.hpp>
 
 #include "engine/file_io.hpp"
+#include "samples/precision/hash.hpp"
 
 namespace tyndall::samples {
 namespace {
@@ -31,29 +29,6 @@ bool has_local_shadows(const PrecisionScene& scene) {
                        [](const reference::Light& light) { return light.casts_shadows; });
 }
 
-/// Fowler, Noll and Vo's hash of 64 bits (RFC 9923), variant 1a.
-class Hash {
-public:
-    void add(std::span<const std::byte> bytes) {
-        for (const std::byte byte : bytes) {
-            value_ = (value_ ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;
-        }
-    }
-    void add(const std::string& text) { add(std::as_bytes(std::span(text))); }
-    void add(double value) {
-        const auto bytes = std::bit_cast<std::array<std::byte, sizeof value>>(value);
-        add(bytes);
-    }
-    [[nodiscard]] std::string text() const {
-        std::array<char, 17> digits{};
-        std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(value_));
-        return digits.data();
-    }
-
-private:
-    std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
 /// Of this program's file; read once.
 Expected<Hash> program_hash() {
     static const Expected<Hash> hash = []() -> Expected<Hash> {
@@ -66,6 +41,14 @@ Expected<Hash> program_hash() {
         return made;
     }();
     return hash;
+}
+
+void add(Hash& hash, const reference::SurfacePoint& point) {
+    for (const glm::dvec3& v : {point.position, point.normal, point.albedo, point.emission}) {
+        hash.add(v.x);
+        hash.add(v.y);
+        hash.add(v.z);
+    }
 }
 
 TruthImage to_image(const char* physics, std::span<const reference::Estimate> estimates) {
@@ -114,8 +97,9 @@ Expected<void> write_picture(const std::filesystem::path& path, const TruthImage
 } // namespace
 
 Expected<std::vector<TruthImage>> exact_pictures(const PrecisionScene& scene, reference::ImageSize size,
-                                                 std::span<const reference::Pixel> pixels, bool airlight_only,
-                                                 const std::optional<std::filesystem::path>& folder,
+                                                 std::span<const reference::Pixel> pixels,
+                                                 std::span<const std::optional<reference::SurfacePoint>> surfaces,
+                                                 bool airlight_only, const std::optional<std::filesystem::path>& folder,
                                                  const std::function<void(const std::string&, double)>& progress) {
     std::vector<TruthImage> images;
     for (const Truth& truth : truths) {
@@ -128,14 +112,19 @@ Expected<std::vector<TruthImage>> exact_pictures(const PrecisionScene& scene, re
             if (!hash) {
                 return tl::unexpected(hash.error());
             }
-            hash->add(scene.name);
-            hash->add(truth.name);
-            for (const double value : {static_cast<double>(size.width), static_cast<double>(size.height),
-                                       scene.tolerance, airlight_only ? 1.0 : 0.0}) {
-                hash->add(value);
+            for (const std::string& part : {scene.name, scene.identity, std::string(truth.name)}) {
+                hash->add(part);
             }
-            for (const reference::Pixel& pixel : pixels) {
-                hash->add(static_cast<double>(pixel.x) + static_cast<double>(size.width) * pixel.y);
+            hash->add(scene.tolerance);
+            hash->add(airlight_only ? 1.0 : 0.0);
+            hash->add(size.width);
+            hash->add(size.height);
+            for (std::size_t i = 0; i < pixels.size(); ++i) {
+                hash->add(pixels[i].x);
+                hash->add(pixels[i].y);
+                if (!surfaces.empty() && surfaces[i]) {
+                    add(*hash, *surfaces[i]);
+                }
             }
             file = *folder / (scene.name + "_" + hash->text() + ".exact");
             if (std::optional<TruthImage> kept = read_picture(file, truth.name, pixels.size())) {
@@ -143,14 +132,14 @@ Expected<std::vector<TruthImage>> exact_pictures(const PrecisionScene& scene, re
                 continue;
             }
         }
-        images.push_back(
-            to_image(truth.name, reference::render(reference_scene(scene, truth.physics), scene.camera, size, pixels,
-                                                   {scene.tolerance, 0.0}, [&](std::size_t done) {
-                                                       if (done % 256 == 0) {
-                                                           progress(truth.name, static_cast<double>(done) /
-                                                                                    static_cast<double>(pixels.size()));
-                                                       }
-                                                   })));
+        const auto tell = [&](std::size_t done) {
+            if (done % 256 == 0) {
+                progress(truth.name, static_cast<double>(done) / static_cast<double>(pixels.size()));
+            }
+        };
+        const std::vector<reference::Estimate> estimates = reference::render(
+            reference_scene(scene, truth.physics), scene.camera, size, pixels, {scene.tolerance, 0.0}, tell, surfaces);
+        images.push_back(to_image(truth.name, estimates));
         if (folder) {
             if (const auto written = write_picture(file, images.back()); !written) {
                 return tl::unexpected(written.error());

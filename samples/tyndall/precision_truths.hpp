@@ -26,12 +26,13 @@ struct TruthImage {
 inline constexpr const char* full_physics = "full";
 
 /// All of physics, and what the pictures may not attempt left out of it. `folder`, if any, keeps the pictures under the
-/// hash of the scene's name, the pixels, the tolerance and this very program, in which the scenes are made and their
-/// pictures computed: nothing else decides what they are. `progress` is told the picture and the part done, 0 to 1.
-/// The error is one sentence.
+/// hash of the scene's name and file, the pixels, what they show, the tolerance and this very program, in which the
+/// scenes are made and their pictures computed: nothing else decides what they are. `surfaces` as in reference::render.
+/// `progress` is told the picture and the part done, 0 to 1. The error is one sentence.
 [[nodiscard]] tl::expected<std::vector<TruthImage>, std::string>
 exact_pictures(const PrecisionScene& scene, reference::ImageSize size, std::span<const reference::Pixel> pixels,
-               bool airlight_only, const std::optional<std::filesystem::path>& folder,
+               std::span<const std::optional<reference::SurfacePoint>> surfaces, bool airlight_only,
+               const std::optional<std::filesystem::path>& folder,
                const std::function<void(const std::string&, double)>& progress);
 
 } // namespace tyndall::samples

@@ -281,20 +281,25 @@ glm::dvec3 background_radiance(const Surroundings& surroundings, const glm::dvec
     return glm::mix(sky, surroundings.ground, std::clamp(-8.0 * direction.y, 0.0, 1.0));
 }
 
-Estimate radiance(const Scene& scene, const Ray& ray, const Tolerance& tolerance) {
-    const std::optional<Hit> hit = scene.geometry.hit(ray);
-    const double length_m = hit ? hit->distance_m : infinity;
-    Estimate behind{background_radiance(scene.surroundings, ray.direction), glm::dvec3(0.0)};
-    if (hit) {
-        const Triangle& triangle = scene.geometry.triangles()[hit->triangle];
-        behind = surface_radiance(scene, {point_at(ray, length_m), hit->normal, triangle.albedo, triangle.emission},
-                                  tolerance);
-    }
+Estimate radiance(const Scene& scene, const Ray& ray, const SurfacePoint* surface, const Tolerance& tolerance) {
+    const double length_m = surface ? glm::length(surface->position - ray.origin) : infinity;
+    const Estimate behind = surface ? surface_radiance(scene, *surface, tolerance)
+                                    : Estimate{background_radiance(scene.surroundings, ray.direction), glm::dvec3(0.0)};
     const Estimate passed = transmittance(scene, ray, length_m, tolerance);
     Estimate sum = airlight(scene, ray, length_m, tolerance);
     sum.value += passed.value * behind.value;
     sum.error += passed.value * behind.error + passed.error * behind.value;
     return sum;
+}
+
+Estimate radiance(const Scene& scene, const Ray& ray, const Tolerance& tolerance) {
+    const std::optional<Hit> hit = scene.geometry.hit(ray);
+    if (!hit) {
+        return radiance(scene, ray, nullptr, tolerance);
+    }
+    const Triangle& triangle = scene.geometry.triangles()[hit->triangle];
+    const SurfacePoint surface{point_at(ray, hit->distance_m), hit->normal, triangle.albedo, triangle.emission};
+    return radiance(scene, ray, &surface, tolerance);
 }
 
 Ray pixel_ray(const Camera& camera, ImageSize size, Pixel pixel) {
@@ -335,14 +340,17 @@ std::vector<Pixel> random_pixels(ImageSize size, std::size_t count, std::uint64_
 }
 
 std::vector<Estimate> render(const Scene& scene, const Camera& camera, ImageSize size, std::span<const Pixel> pixels,
-                             const Tolerance& tolerance, const std::function<void(std::size_t)>& progress) {
+                             const Tolerance& tolerance, const std::function<void(std::size_t)>& progress,
+                             std::span<const std::optional<SurfacePoint>> surfaces) {
     std::vector<Estimate> image(pixels.size());
     std::atomic<std::size_t> next = 0;
     std::mutex reporting;
     std::size_t done = 0;
     const auto work = [&] {
         for (std::size_t i = next++; i < pixels.size(); i = next++) {
-            image[i] = radiance(scene, pixel_ray(camera, size, pixels[i]), tolerance);
+            const Ray ray = pixel_ray(camera, size, pixels[i]);
+            image[i] = surfaces.empty() ? radiance(scene, ray, tolerance)
+                                        : radiance(scene, ray, surfaces[i] ? &*surfaces[i] : nullptr, tolerance);
             if (progress) {
                 const std::lock_guard lock(reporting);
                 progress(++done);

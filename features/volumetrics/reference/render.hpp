@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,10 @@ struct SurfacePoint {
 /// What the eye sees along the ray: surface or background through the medium, and the medium itself.
 [[nodiscard]] Estimate radiance(const Scene& scene, const Ray& ray, const Tolerance& tolerance);
 
+/// The same where it is known what the ray hits; `surface` is null where it hits nothing.
+[[nodiscard]] Estimate radiance(const Scene& scene, const Ray& ray, const SurfacePoint* surface,
+                                const Tolerance& tolerance);
+
 struct Pixel {
     std::uint32_t x = 0; ///< from the left
     std::uint32_t y = 0; ///< from the top
@@ -53,9 +58,11 @@ struct ImageSize {
 [[nodiscard]] std::vector<Pixel> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed);
 
 /// `radiance` of every pixel of `pixels`, in their order, on all of the machine's processors. `progress`, if any, is
-/// called with the number of pixels done, from several threads, one at a time.
+/// called with the number of pixels done, from several threads, one at a time. `surfaces`, if any, are what the pixels
+/// show instead of the scene's own colours and normals, one a pixel.
 [[nodiscard]] std::vector<Estimate> render(const Scene& scene, const Camera& camera, ImageSize size,
                                            std::span<const Pixel> pixels, const Tolerance& tolerance,
-                                           const std::function<void(std::size_t)>& progress = {});
+                                           const std::function<void(std::size_t)>& progress = {},
+                                           std::span<const std::optional<SurfacePoint>> surfaces = {});
 
 } // namespace tyndall::volumetrics::reference
