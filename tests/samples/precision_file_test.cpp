@@ -34,11 +34,12 @@ GltfFile two_quads() {
                              {"indices", file.add_accessor(indices, "SCALAR", engine::test::type_unsigned_short)},
                              {"material", file.add("materials", std::move(material))}});
     };
-    add_quad({-30, -20, -10, 30, -20, -10, 30, 20, -10, -30, 20, -10}, {0, 0, 1},
+    add_quad({-30, -20, -10, 30, -20, -10, 30, 20, -10, -30, 20, -10}, {0.12F, 0.09F, 0.9887F},
              {{"pbrMetallicRoughness", {{"baseColorFactor", {0.7, 0.4, 0.2, 1.0}}, {"metallicFactor", 1.0}}}});
     add_quad({-5, -3, -4.65F, -1, -3, -7.05F, -1, 3, -9.75F, -5, 3, -7.35F}, {0.48F, 0.36F, 0.8F},
              {{"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.5, 0.6, 1.0}}, {"metallicFactor", 0.0}}},
               {"emissiveFactor", {0.3, 0.1, 0.0}}});
+    add_quad({1, 7, 0.5F, 3, 7, 0.5F, 3, 9, 0.5F, 1, 9, 0.5F}, {0, 0, 1}, json::object());
     json& lights = file.root["extensions"]["KHR_lights_punctual"]["lights"];
     const auto add_light = [&](json light, json node) {
         lights.push_back(std::move(light));
@@ -49,7 +50,7 @@ GltfFile two_quads() {
     add_light({{"type", "directional"}, {"intensity", 5.0}}, {{"rotation", {0.0, 0.225, 0.0, 0.9744}}});
     add_light({{"type", "directional"}, {"intensity", 2.0}, {"color", {0.2, 0.5, 1.0}}},
               {{"rotation", {0.0, -0.2, 0.0, 0.9798}}});
-    add_light({{"type", "point"}, {"intensity", 30.0}, {"range", 20.0}}, {{"translation", {2.0, 1.0, -4.0}}});
+    add_light({{"type", "point"}, {"intensity", 300.0}, {"range", 20.0}}, {{"translation", {2.0, 8.0, 1.0}}});
     add_light({{"type", "spot"}, {"intensity", 60.0}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}},
               {{"translation", {1.0, 0.0, 0.0}}});
     file.root["extensionsUsed"] = {"KHR_lights_punctual"};
