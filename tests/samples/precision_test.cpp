@@ -196,6 +196,54 @@ TEST(Precision, ChoosesAndRunsTheChoice) {
     EXPECT_NEAR(left("fp32 storage"), left("none removed"), 0.1 * left("none removed"));
 }
 
+TEST(Precision, AShortSweepKeepsItsWordAndItsFrontIsMonotone) {
+    const std::filesystem::path folder = fresh_folder();
+    const std::vector<std::string> common{
+        "precision", "--scene",  "point_light", "--size",   "32x18",        "--frames",
+        "2",         "--grid",   "8x5,16x9",    "--slices", "8,16",         "--error",
+        "99%",       "--budget", "1e6ms",       "--quick",  "--integrator", "euler,exponential"};
+    std::vector<std::string> arguments = common;
+    arguments.insert(arguments.end(), {"--out", folder.string()});
+    const ToolRun run = run_tool(arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+
+    std::ifstream file(folder / "precision.json");
+    const nlohmann::json all = nlohmann::json::parse(file)["rows"];
+    // Two integrators, two grids, two numbers of slices and the scene's own configuration; no sun: one visibility.
+    std::vector<nlohmann::json> judged;
+    for (const nlohmann::json& row : all) {
+        EXPECT_GT(row["relative_l2"].get<double>(), 100.0 * row["reference_error"].get<double>());
+        EXPECT_GT(row["relative_time"], 0.0);
+        if (row["frame"] == 2 && row["physics"] == "full") {
+            judged.push_back(row);
+        }
+    }
+    ASSERT_EQ(judged.size(), 9U);
+    EXPECT_EQ(std::count_if(judged.begin(), judged.end(), [](const auto& row) { return row["own"] == true; }), 1);
+    const nlohmann::json* cheapest = nullptr;
+    for (const nlohmann::json& row : judged) {
+        const bool beaten = std::any_of(judged.begin(), judged.end(), [&](const nlohmann::json& other) {
+            return other["fog_ms"] < row["fog_ms"] && other["relative_l2"] < row["relative_l2"];
+        });
+        EXPECT_TRUE(row["on_front"] == false || !beaten) << row;
+        cheapest = cheapest == nullptr || row["fog_ms"] < (*cheapest)["fog_ms"] ? &row : cheapest;
+    }
+    EXPECT_EQ((*cheapest)["on_front"], true);
+
+    // Everything is within these bounds: the cheapest of all is chosen by one, the most exact by the other.
+    const auto sentence = [&](const std::string& wish, const nlohmann::json& row) {
+        return "point_light, " + wish + ": " + row["integrator"].get<std::string>() + ", one_tap, " +
+               row["grid"].get<std::string>() + "x" + std::to_string(row["slices"].get<int>()) + ": ";
+    };
+    const nlohmann::json& most_exact = *std::min_element(
+        judged.begin(), judged.end(), [](const auto& a, const auto& b) { return a["relative_l2"] < b["relative_l2"]; });
+    EXPECT_NE(run.output.find(sentence("the cheapest within 99 %", *cheapest)), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find(sentence("the most exact within 1e+06 ms", most_exact)), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("because 9 of 9 measured are within that bound"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("point_light, the scene's own configuration, "), std::string::npos) << run.output;
+    std::filesystem::remove_all(folder);
+}
+
 TEST(Precision, RefusesWhatItCannotMeasure) {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{"precision", "--scene", "hell"},
                                                       {"precision", "--integrator", "rk4"},
