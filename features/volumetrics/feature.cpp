@@ -106,7 +106,7 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
     const std::array<std::uint32_t, 6> media{
         medium.homogeneous.extinction_per_m > 0.0F || medium.homogeneous.emission_per_m != none,
         medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none,
-        medium.noise.amplitude > 0.0F,
+        medium.noise.amplitude > 0.0F ? medium.noise.octaves : 0,
         is_perspective(frame->inputs.camera),
         frame->parameters.frame.z > 0,
         frame->depth_curve};

@@ -72,6 +72,8 @@ void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
             s.read("amplitude", medium.noise.amplitude);
             s.read("scale_m", medium.noise.scale_m);
             s.read("wind_m_s", medium.noise.wind_m_s);
+            s.read("octaves", medium.noise.octaves);
+            s.read("gain", medium.noise.gain);
         });
         elements(section, "volumes", LocalVolume::most, error,
                  [&](Section& s, std::uint32_t) { read_volume(s, medium.volumes.emplace_back()); });

@@ -76,7 +76,7 @@ glm::vec4 depth_coefficients(const glm::dmat4& p) {
 /// the fractions must survive.
 glm::vec4 noise_origin(const FrameInputs& frame) {
     const DensityNoise& noise = frame.medium.noise;
-    glm::vec4 origin(0.0F, 0.0F, 0.0F, noise.amplitude);
+    glm::vec4 origin(0.0F, 0.0F, 0.0F, static_cast<double>(noise.amplitude) / octave_weights(noise));
     for (int i = 0; i < 3; ++i) {
         const double drift_m = static_cast<double>(noise.wind_m_s[i]) * frame.time_s;
         const double cells = (frame.camera.origin_m[i] - drift_m) / static_cast<double>(noise.scale_m);
@@ -380,7 +380,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.height_law = glm::vec4(static_cast<double>(medium.height.base_height_m) - frame.camera.origin_m.y,
                              medium.height.falloff_per_m, 0.0, 0.0);
     u.noise_origin = noise_origin(frame);
-    u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, 0.0F, 0.0F, 0.0F);
+    u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, medium.noise.gain, 0.0F, 0.0F);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
     u.emission_scale = glm::vec4(emission_scale, density_scale / emission_scale * radiance_scale, 0.0F, 0.0F);
     write_phase(medium, u);

@@ -17,7 +17,7 @@ layout(constant_id = 8) const bool has_depth_curve = false;
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
 layout(constant_id = 3) const bool has_homogeneous = true;
 layout(constant_id = 4) const bool has_height = true;
-layout(constant_id = 5) const bool has_noise = true;
+layout(constant_id = 5) const uint noise_octaves = 1u; // 0: no noise
 layout(constant_id = 6) const bool is_perspective = true;
 layout(constant_id = 7) const bool has_volumes = false;
 
@@ -27,12 +27,19 @@ layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D d
 layout(set = 0, binding = 2, VOLUME_FORMAT) uniform writeonly restrict image3D emitted;
 #endif
 
-// The noise is faded where a froxel is too large to show it.
+// The octaves of DensityNoise, features/volumetrics/medium.hpp, faded where a froxel is too large to show them.
 float noise_factor(vec3 render_position, float froxel_m) {
     float cells = froxel_m * u.noise_cells.x;
-    float amplitude = u.noise_origin.w * clamp(2.0 - 2.0 * cells, 0.0, 1.0);
+    float amplitude = u.noise_origin.w;
     vec3 p = render_position * u.noise_cells.x + u.noise_origin.xyz;
-    return amplitude > 0.0 ? 1.0 + amplitude * gradient_noise(p) : 1.0;
+    float factor = 1.0;
+    for (uint octave = 0u; octave < noise_octaves && cells < 1.0; ++octave) {
+        factor += amplitude * clamp(2.0 - 2.0 * cells, 0.0, 1.0) * gradient_noise(p);
+        amplitude *= u.noise_cells.y;
+        cells *= 2.0;
+        p = 2.0 * p + vec3(17.375, 5.625, 11.125);
+    }
+    return factor;
 }
 
 void main() {
@@ -64,7 +71,7 @@ void main() {
             blend_local_volume(u.volumes[i], eye + ray * near_m, eye + ray * far_m, medium, emission);
         }
     }
-    if (has_noise) {
+    if (noise_octaves > 0u) {
         float middle_m = 0.5 * (near_m + far_m);
         vec2 cell = (u.volume.slope.xy * middle_m + u.volume.origin.xy) / (grid.xy - 1.0);
         float froxel_m = max(max(abs(cell.x), abs(cell.y)), (far_m - near_m) * length(ray));

@@ -41,8 +41,8 @@ struct VolumetricParameters {
     vec4 homogeneous_emission; // rgb, cd/m^3, times emission_scale.x; a 0
     vec4 height_emission;      // the same at and below the base
     vec4 height_law;      // x: base height above the camera, m; y: falloff, 1/m; zw 0
-    vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude, 0 to 1
-    vec4 noise_cells;     // x: cells per metre; yzw 0
+    vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude of the first octave
+    vec4 noise_cells;     // x: cells per metre; y: amplitude of an octave over that of the one before; zw 0
     vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0
     vec4 emission_scale;  // x: stored emission is the true one (cd/m^3) times x; y: stored emission times y has the unit of
                           // a stored coefficient times stored radiance; zw 0

@@ -30,7 +30,8 @@ TEST(FogJson, ReadsEveryKey) {
             "homogeneous": {"extinction_per_m": 0.02, "albedo": [0.9, 0.8, 0.7], "emission_per_m": [3, 2, 1]},
             "height": {"extinction_per_m": 0.05, "albedo": [0.6, 0.5, 0.4], "base_height_m": -3, "falloff_per_m": 0.3,
                        "emission_per_m": [0, 4, 5]},
-            "noise": {"amplitude": 0.6, "scale_m": 3, "wind_m_s": [0.5, 0, -0.25]}},
+            "noise": {"amplitude": 0.6, "scale_m": 3, "wind_m_s": [0.5, 0, -0.25], "octaves": 3,
+                      "gain": 0.75}},
         "phase": {"g": -0.4},
         "ambient": {"radiance": [1, 2, 3]},
         "grid": {"width": 40, "height": 23, "slices": 16, "range_m": 100, "shape_m": 0.01},
@@ -51,6 +52,8 @@ TEST(FogJson, ReadsEveryKey) {
     EXPECT_EQ(m.noise.amplitude, 0.6F);
     EXPECT_EQ(m.noise.scale_m, 3.0F);
     EXPECT_EQ(m.noise.wind_m_s, glm::vec3(0.5F, 0.0F, -0.25F));
+    EXPECT_EQ(m.noise.octaves, 3U);
+    EXPECT_EQ(m.noise.gain, 0.75F);
     EXPECT_EQ(m.phase_g, -0.4F);
     EXPECT_EQ(m.ambient_radiance, glm::vec3(1, 2, 3));
     const Settings& s = fog->settings;
@@ -114,11 +117,16 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
               "medium.height.albedo[2] must be between 0 and 1, not 2.");
     EXPECT_EQ(refusal(R"({"medium": {"noise": {"amplitude": 1.5}}})"),
               "medium.noise.amplitude must be between 0 and 1, not 1.5.");
+    EXPECT_EQ(refusal(R"({"medium": {"noise": {"octaves": 9}}})"),
+              "medium.noise.octaves must be between 1 and 8, not 9.");
+    EXPECT_EQ(refusal(R"({"medium": {"noise": {"gain": -0.5}}})"),
+              "medium.noise.gain must be between 0 and 1, not -0.5.");
     EXPECT_EQ(refusal(R"({"phase": {"g": 1}})"), "phase.g must be between -0.999 and 0.999, not 1.");
     EXPECT_EQ(refusal(R"({"grid": {"width": 0}})"), "grid.width must be between 2 and 1024, not 0.");
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 0}})").substr(0, 12), "grid.range_m");
     EXPECT_EQ(refusal(R"({"grid": {"range_m": 10, "shape_m": 1e-4}})").substr(0, 12), "grid.shape_m");
-    EXPECT_EQ(refusal(R"({"grid": {"law": "log"}})"), "grid.law must be one of \"shaped\", \"linear\", \"curve\", \"scene\".");
+    EXPECT_EQ(refusal(R"({"grid": {"law": "log"}})"),
+              "grid.law must be one of \"shaped\", \"linear\", \"curve\", \"scene\".");
     EXPECT_EQ(refusal(R"({"grid": {"law": "curve"}})"),
               "The number of grid.curve_m's depths must be between 1 and 8, not 0.");
     EXPECT_EQ(refusal(R"({"grid": {"curve_m": [1, 2, 3, 4, 5, 6, 7, 8, 9]}})"),

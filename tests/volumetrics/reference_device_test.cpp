@@ -12,10 +12,13 @@ namespace {
 
 class AgainstReference : public FogTest {};
 
-TEST_F(AgainstReference, NoiseIsTheOneThatIsDefined) {
+/// Density of one noise on the device against its definition.
+class AgainstReferenceNoise : public FogTest, public testing::WithParamInterface<DensityNoise> {};
+
+TEST_P(AgainstReferenceNoise, IsTheOneThatIsDefined) {
     Scene scene = plain_scene();
     scene.inputs.medium.homogeneous.extinction_per_m = 0.3F;
-    scene.inputs.medium.noise = {.amplitude = 0.8F, .scale_m = 25.0F, .wind_m_s = {0.7F, -1.0F, 0.4F}};
+    scene.inputs.medium.noise = GetParam();
     scene.inputs.time_s = 11.0;
     scene.inputs.camera.origin_m = {123.0, -456.0, 789.0};
     const Result result = render(scene);
@@ -42,6 +45,13 @@ TEST_F(AgainstReference, NoiseIsTheOneThatIsDefined) {
     std::printf("noise: density at most %.1e off\n", worst);
     EXPECT_LE(worst, 1e-4);
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Octaves, AgainstReferenceNoise,
+    testing::Values(
+        DensityNoise{.amplitude = 0.8F, .scale_m = 25.0F, .wind_m_s = {0.7F, -1.0F, 0.4F}},
+        DensityNoise{
+            .amplitude = 0.8F, .scale_m = 100.0F, .wind_m_s = {0.7F, -1.0F, 0.4F}, .octaves = 3, .gain = 0.7F}));
 
 /// Shining height fog, a sun and a spot light beside the view, before a black wall at 20 m.
 TEST_F(AgainstReference, LightsInHeightFog) {

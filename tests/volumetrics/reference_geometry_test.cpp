@@ -138,5 +138,20 @@ TEST(ReferenceNoise, IsSmoothPeriodicAndNothingAtLatticePoints) {
     EXPECT_GT(squares / count, 0.01);
 }
 
+/// Across the seam of the tile differences are those of the inside, whose like is a tile away.
+TEST(ReferenceNoise, OctavesAreTheirWeightedMeanAndTile) {
+    const glm::dvec3 p{12.3, 200.7, 99.1};
+    const glm::dvec3 second = 2.0 * p + glm::dvec3(17.375, 5.625, 11.125);
+    EXPECT_EQ(octave_noise(p, 1, 0.5), gradient_noise(p));
+    EXPECT_NEAR(octave_noise(p, 2, 0.25), (gradient_noise(p) + 0.25 * gradient_noise(second)) / 1.25, 1e-15);
+    for (int i = 0; i < 100; ++i) {
+        const glm::dvec3 below(256.0 - 1e-3, 2.37 * i, 1.61 * i);
+        const glm::dvec3 above(1e-3, 2.37 * i, 1.61 * i);
+        const glm::dvec3 inside = below + glm::dvec3(2e-3, 0.0, 0.0);
+        EXPECT_NEAR(octave_noise(above, 5, 0.6), octave_noise(inside, 5, 0.6), 1e-10);
+        EXPECT_LE(std::abs(octave_noise(above, 5, 0.6) - octave_noise(below, 5, 0.6)), 0.05);
+    }
+}
+
 } // namespace
 } // namespace tyndall::volumetrics::reference

@@ -312,7 +312,8 @@ TEST(Reference, SurfacesAreLambertianAndSeenThroughTheMedium) {
 TEST(Reference, NoisyFogEqualsTheSum) {
     Scene scene = homogeneous(0.1F);
     scene.medium.height = {.extinction_per_m = 0.3F, .base_height_m = 0.5F, .falloff_per_m = 0.4F};
-    scene.medium.noise = {.amplitude = 0.9F, .scale_m = 1.7F, .wind_m_s = {1.0F, 0.5F, -0.3F}};
+    scene.medium.noise = {
+        .amplitude = 0.9F, .scale_m = 1.7F, .wind_m_s = {1.0F, 0.5F, -0.3F}, .octaves = 2, .gain = 0.6F};
     scene.time_s = 3.0;
     scene.medium.ambient_radiance = glm::vec3(1.0F);
     const Ray ray{{-300.0, 0.2, 4.0}, glm::normalize(glm::dvec3(1.0, 0.2, -0.4))};

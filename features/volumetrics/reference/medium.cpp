@@ -108,7 +108,7 @@ double Fog::noise_factor(const glm::dvec3& point) const {
         return 1.0;
     }
     const glm::dvec3 cells = (point - glm::dvec3(noise.wind_m_s) * time_s_) / static_cast<double>(noise.scale_m);
-    return 1.0 + static_cast<double>(noise.amplitude) * gradient_noise(cells);
+    return 1.0 + static_cast<double>(noise.amplitude) * octave_noise(cells, noise.octaves, noise.gain);
 }
 
 double Fog::height_profile(const glm::dvec3& point) const {
@@ -220,8 +220,13 @@ void Fog::add_seams(const Ray& ray, Interval part, std::vector<double>& seams) c
     const DensityNoise& noise = medium_->noise;
     if (noise.amplitude > 0.0F) {
         const auto scale_m = static_cast<double>(noise.scale_m);
-        add_lattice_crossings((ray.origin - glm::dvec3(noise.wind_m_s) * time_s_) / scale_m, ray.direction / scale_m,
-                              part, most_crossings, seams);
+        glm::dvec3 origin = (ray.origin - glm::dvec3(noise.wind_m_s) * time_s_) / scale_m;
+        glm::dvec3 direction = ray.direction / scale_m;
+        for (std::uint32_t octave = 0; octave < noise.octaves; ++octave) {
+            add_lattice_crossings(origin, direction, part, most_crossings, seams);
+            origin = next_octave(origin);
+            direction *= 2.0;
+        }
     }
 }
 

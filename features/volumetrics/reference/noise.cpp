@@ -50,6 +50,23 @@ double gradient_noise(const glm::dvec3& p) {
     return std::clamp(1.25 * sum, -1.0, 1.0);
 }
 
+glm::dvec3 next_octave(const glm::dvec3& p) {
+    return p + p + glm::dvec3(17.375, 5.625, 11.125);
+}
+
+double octave_noise(const glm::dvec3& p, std::uint32_t octaves, double gain) {
+    double sum = 0.0;
+    double weights = 0.0;
+    glm::dvec3 at = p;
+    for (std::uint32_t i = 0; i < octaves; ++i) {
+        const double weight = std::pow(gain, i);
+        sum += weight * gradient_noise(at);
+        weights += weight;
+        at = next_octave(at);
+    }
+    return sum / weights;
+}
+
 void add_lattice_crossings(const glm::dvec3& origin, const glm::dvec3& direction, Interval part, std::size_t most,
                            std::vector<double>& seams) {
     const double planes =

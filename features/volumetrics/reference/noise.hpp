@@ -1,6 +1,7 @@
 // The density noise in double precision.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -17,6 +18,12 @@ namespace tyndall::volumetrics::reference {
 /// bits, the lowest for x, each g meaning (2 g - 1023) / 1024. The eight products of gradient and offset are
 /// interpolated by 6 a^5 - 15 a^4 + 10 a^3 in each axis, scaled by 1.25 and clamped.
 [[nodiscard]] double gradient_noise(const glm::dvec3& p);
+
+/// The point of octave i + 1 that belongs to the point `p` of octave i: 2 p + (17.375, 5.625, 11.125).
+[[nodiscard]] glm::dvec3 next_octave(const glm::dvec3& p);
+
+/// Mean of the octaves of gradient noise, the first at `p`, the i-th weighted by gain^i: of period 256, in [-1, 1].
+[[nodiscard]] double octave_noise(const glm::dvec3& p, std::uint32_t octaves, double gain);
 
 /// Appends where the ray, its origin and direction in cells, crosses a plane of the lattice within `part`: between two
 /// such places the noise is a polynomial. Nothing is added if there are more than `most` of them.
