@@ -33,7 +33,8 @@ ForwardVariant ForwardInputs::variant(bool transparent) const {
                       : clusters ? LocalLights::of_cluster
                                  : LocalLights::all,
             .transparent = transparent,
-            .scattering = scattering.has_value()};
+            .scattering = scattering.has_value(),
+            .air = air};
 }
 
 void ForwardInputs::declare(rg::PassBuilder& pass) const {

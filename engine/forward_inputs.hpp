@@ -18,6 +18,7 @@ struct ForwardInputs {
     std::optional<SceneLights> lights; ///< with at least one light
     std::optional<LightClusters> clusters;
     std::optional<ScatteringVolumeImages> scattering; ///< for transparents only
+    bool air = false;                                 ///< weakens light on its way
     VkSampler shadow_sampler = VK_NULL_HANDLE;
     VkSampler linear_sampler = VK_NULL_HANDLE;
 

@@ -62,6 +62,17 @@ struct SceneImages {
     rg::Image depth; ///< D32, reverse-Z
 };
 
+/// What fills the space between lights and surfaces, and weakens light on its way: homogeneous fog and fog that falls
+/// off with height, extinction in 1/m. Nothing where all is 0.
+struct Air {
+    float homogeneous_per_m = 0.0F;
+    float height_per_m = 0.0F; ///< at and below the base
+    float falloff_per_m = 0.0F;
+    float base_height_m = 0.0F; ///< world
+
+    [[nodiscard]] bool is_clear() const { return homogeneous_per_m == 0.0F && height_per_m == 0.0F; }
+};
+
 /// The finished picture, from the point `frame_end` on: R8G8B8A8_UNORM holding sRGB-encoded values.
 struct FrameOutput {
     rg::Image picture;

@@ -21,6 +21,7 @@ struct FrameLook {
     Background background;
     float largest_radiance = 0.0F; ///< what the colour format can hold
     std::uint32_t local_light_count = 0;
+    Air air;
 };
 [[nodiscard]] gpu::FrameParameters make_frame_parameters(const FrameView& view, const LightRoles& lights,
                                                          const FrameLook& look);

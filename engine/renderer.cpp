@@ -94,6 +94,7 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
     frame_.view.frame_index = request.frame_index;
     frame_.view.frame_slot = request.frame_slot;
     frame_.view.cut = request.cut;
+    frame_.air = !request.air.is_clear();
     frame_.lists = visible_instances(scene_, frame_.view);
     frame_.view.visible_depth_m = frame_.lists.depth_m;
 
@@ -101,7 +102,8 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
     const FrameLook look{.ambient = settings_.ambient.value_or(default_ambient(lights_.sun)),
                          .background = settings_.background.value_or(default_background(lights_.sun)),
                          .largest_radiance = largest_radiance(settings_.color_format),
-                         .local_light_count = light_count};
+                         .local_light_count = light_count,
+                         .air = request.air};
     frame_data_.write_parameters(request.frame_slot, make_frame_parameters(frame_.view, lights_, look));
     frame_data_.write_places(request.frame_slot, frame_.view.origin_m, scene_.instances, lights_.local,
                              settings_.lights);

@@ -45,6 +45,7 @@ struct FrameRequest {
     std::uint64_t frame_index = 0;
     std::uint32_t frame_slot = 0; ///< Executor::next_slot, after wait_for_slot
     bool cut = false;             ///< first frame, or the camera jumped
+    Air air = {};                 ///< that surfaces are lit through
 };
 
 class Renderer {
@@ -105,6 +106,7 @@ private:
         rg::Buffer instances;
         std::optional<ParticleDraws> particles;
         std::optional<Error> error; ///< of a callback
+        bool air = false;           ///< weakens light on its way to surfaces
     };
 
     Renderer(const Device& device, Scene scene, RendererSettings settings);

@@ -22,6 +22,7 @@ struct ForwardVariant {
     LocalLights lights = LocalLights::none;
     bool transparent = false;
     bool scattering = false; ///< with `transparent` only
+    bool air = false;        ///< weakens light on its way
 
     friend auto operator<=>(const ForwardVariant&, const ForwardVariant&) = default;
 };

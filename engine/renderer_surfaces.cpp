@@ -71,6 +71,7 @@ tl::expected<void, Error> Renderer::declare_depth(rg::GraphBuilder& graph, rg::B
 tl::expected<void, Error> Renderer::declare_opaque(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
     ForwardInputs inputs{.parameters = frame_.parameters,
                          .instances = frame_.instances,
+                         .air = frame_.air,
                          .shadow_sampler = shadow_sampler_.get(),
                          .linear_sampler = linear_sampler_.get()};
     inputs.find(blackboard, false);

@@ -139,6 +139,8 @@ float change_everywhere(const FrameInputs& frame, const FrameMemory& before) {
         change += relative_difference(frame.medium.ambient_sh_1[i], before.medium.ambient_sh_1[i]);
     }
     change += sun_change(frame.sun, before.sun, steepness(phase));
+    const glm::vec4 air = air_of(frame);
+    change += relative_difference(glm::vec3(air), glm::vec3(before.air)) + (air.w != before.air.w ? 1.0 : 0.0);
     return static_cast<float>(std::min(change, 1.0));
 }
 

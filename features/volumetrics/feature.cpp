@@ -276,6 +276,11 @@ tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& g
         state.omit("sun shadows (ESM downsample and blur)",
                    shines(frame.inputs) ? "the sun casts no shadow" : "there is no sun");
     }
+    if (!weakens_light(frame.inputs.medium, frame.inputs.settings)) {
+        state.omit("weakening of light on its way", frame.inputs.settings.light_path == LightPath::none
+                                                        ? "it is switched off"
+                                                        : "there is neither homogeneous nor height fog");
+    }
     if (!frame.inputs.settings.temporal.enabled) {
         state.omit("temporal reprojection", "it is switched off");
     }

@@ -38,6 +38,7 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
                {"exponential", Integrator::exponential},
                {"exponential_quadratic", Integrator::exponential_quadratic}});
     root.read("error_estimate", settings.error_estimate);
+    root.read("light_path", settings.light_path, {{"none", LightPath::none}, {"closed_form", LightPath::closed_form}});
     subsection(root, "visibility", error, [&](Section& s) {
         s.read("method", settings.visibility.method,
                {{"one_tap", SunVisibility::one_tap},

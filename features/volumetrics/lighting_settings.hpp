@@ -22,6 +22,12 @@ enum class SunVisibility : std::uint8_t {
     lit_fraction, ///< the part of the slice that is lit, from every texel that it crosses
 };
 
+/// What the medium takes from light on its way to a froxel or a surface (shaders/common/light_attenuation.glsl).
+enum class LightPath : std::uint8_t {
+    none,        ///< nothing: all light arrives
+    closed_form, ///< homogeneous and height fog, exactly; not their noise, and not the local volumes
+};
+
 struct VisibilitySettings {
     SunVisibility method = SunVisibility::one_tap;
     std::uint32_t taps = 4; ///< of n_taps, [1, 64]

@@ -156,7 +156,7 @@ gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameter
     far.sun_illuminance.w = medium.height.falloff_per_m;
     if (frame.sun) {
         const glm::dvec3 travel = glm::normalize(glm::dvec3(frame.sun->direction));
-        far.sun_direction = glm::vec4(view_from_render * travel, 0.0);
+        far.sun_direction = glm::vec4(view_from_render * travel, weakens_light(medium, frame.settings) ? 1.0 : 0.0);
         far.sun_illuminance = glm::vec4(frame.sun->illuminance_lux, medium.height.falloff_per_m);
     }
     far.phase = phase_terms(phase_of(medium));
@@ -236,6 +236,14 @@ std::size_t write_changes(const FrameInputs& frame, const std::optional<FrameMem
 }
 
 } // namespace
+
+glm::vec4 air_of(const FrameInputs& frame) {
+    const Medium& medium = frame.medium;
+    return weakens_light(medium, frame.settings)
+               ? glm::vec4(medium.homogeneous.extinction_per_m, medium.height.extinction_per_m,
+                           medium.height.falloff_per_m, medium.height.base_height_m)
+               : glm::vec4(0.0F);
+}
 
 glm::uvec2 allocated_columns(const FrameInputs& frame) {
     return glm::max(frame.allocated_columns, glm::uvec2(frame.settings.grid.width, frame.settings.grid.height));
@@ -319,6 +327,7 @@ FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters&
             .image_size = frame.image_size,
             .sun = frame.sun,
             .lights = frame.lights,
+            .air = air_of(frame),
             .volume = parameters.volume,
             .storage = frame.settings.storage,
             .frames_since_cut = parameters.frame.x};
@@ -379,6 +388,8 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.height_emission = glm::vec4(medium.height.emission_per_m * emission_scale, 0.0F);
     u.height_law = glm::vec4(static_cast<double>(medium.height.base_height_m) - frame.camera.origin_m.y,
                              medium.height.falloff_per_m, 0.0, 0.0);
+    u.air = air_of(frame);
+    u.air.w = static_cast<float>(frame.camera.origin_m.y - static_cast<double>(u.air.w));
     u.noise_origin = noise_origin(frame);
     u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, medium.noise.gain, 0.0F, 0.0F);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);

@@ -19,6 +19,7 @@ struct FrameMemory {
     glm::uvec2 image_size{0};
     std::optional<Sun> sun;
     std::vector<gpu::GpuLight> lights; ///< in the render space of `camera`
+    glm::vec4 air{0.0F};               ///< of air_of
     gpu::ScatteringVolume volume;
     StorageFormat storage = StorageFormat::fp16;
     std::uint32_t frames_since_cut = 0;
@@ -26,6 +27,10 @@ struct FrameMemory {
 
 /// `parameters` are those that were made of `frame`.
 [[nodiscard]] FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters& parameters);
+
+/// What takes from light on its way: extinction of homogeneous and of height fog, 1/m, the latter's falloff, 1/m, and
+/// base height, m. 0 where nothing does.
+[[nodiscard]] glm::vec4 air_of(const FrameInputs& frame);
 
 /// Columns of the images that hold the grid.
 [[nodiscard]] glm::uvec2 allocated_columns(const FrameInputs& frame);

@@ -42,4 +42,9 @@ tl::expected<void, Error> validate(const Settings& settings) {
     return check.result();
 }
 
+bool weakens_light(const Medium& medium, const Settings& settings) {
+    return settings.light_path == LightPath::closed_form &&
+           (medium.homogeneous.extinction_per_m > 0.0F || medium.height.extinction_per_m > 0.0F);
+}
+
 } // namespace tyndall::volumetrics

@@ -55,6 +55,17 @@ void VolumetricsGlue::keep_error(const tl::expected<void, volumetrics::Error>& r
     }
 }
 
+engine::Air VolumetricsGlue::air() const {
+    const volumetrics::Medium& medium = fog_.medium;
+    if (!enabled_ || !volumetrics::weakens_light(medium, fog_.settings)) {
+        return {};
+    }
+    return {.homogeneous_per_m = medium.homogeneous.extinction_per_m,
+            .height_per_m = medium.height.extinction_per_m,
+            .falloff_per_m = medium.height.falloff_per_m,
+            .base_height_m = medium.height.base_height_m};
+}
+
 void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
     error_.reset();
     const engine::FrameView& view = *blackboard.find<engine::FrameView>();

@@ -8,7 +8,7 @@
 #define TYNDALL_SHADERS_COMMON_FAR_FIELD_GLSL
 
 #include "far_field.h"
-#include "height_density.glsl"
+#include "light_attenuation.glsl"
 
 struct FarFog {
     vec3 radiance; // toward the eye, at the beginning of the path
@@ -48,31 +48,48 @@ vec3 mean_albedo(FarField far, vec2 taus) {
     return mix(far.homogeneous.rgb, far.height.rgb, taus.y / max(taus.x + taus.y, 1e-30));
 }
 
+// Integral over a piece of optical depth tau of e^-t times the transmittance of the light's own way, whose optical depth
+// goes from `light_start` to `light_end`: exact where it changes as the piece's own does, which it does in height fog.
+float scattered_light(float tau, float light_start, float light_end) {
+    float change = abs(light_end + tau - light_start);
+    return tau * exp(-min(light_start, light_end + tau)) * phi1(change);
+}
+
 // The path from `start` (view space, m) in direction `slope`, along which view depth grows by 1, over depth_m > 0.
-// Source and extinction are those of the froxels: L = J (1 - e^-tau), J constant along the path. Where the two fogs'
-// albedos differ, J takes their mean weighted with optical depth over half an optical depth of the homogeneous fog, and
-// that of the rest behind it.
+// Source and extinction are those of the froxels. The path has two pieces: what lies within half an optical depth of the
+// homogeneous fog and 1.5 scale heights of the other, and the rest. In each the albedo is the mean weighted with optical
+// depth.
 FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
     float stretch = length(slope);
     vec3 ray = slope / stretch;
     float length_m = min(depth_m * stretch, 1e30);
     float height = dot(far.up.xyz, start) + far.up.w;
     float climb = dot(far.up.xyz, ray);
-    float near_m = min(length_m, 0.5 / max(far.homogeneous.w, 1e-30));
+    float scale_m = 1.5 / max(far.sun_illuminance.w * abs(climb), 1e-30); // over which the height fog changes
+    float near_m = min(length_m, min(0.5 / max(far.homogeneous.w, 1e-30), scale_m));
     vec2 near = vec2(far.homogeneous.w * near_m, far_height_optical_depth(far, height, climb, near_m));
     vec2 all = vec2(far.homogeneous.w * length_m, far_height_optical_depth(far, height, climb, length_m));
     vec2 behind = max(all - near, 0.0);
-    float tau = all.x + all.y;
-    float phase = phase_of_terms(far.phase, far.sun_direction.xyz, -ray);
-    vec3 directed = far.ambient_x.rgb * ray.x + far.ambient_y.rgb * ray.y + far.ambient_z.rgb * ray.z;
-    vec3 arriving = far.ambient.rgb + directed + far.sun_illuminance.rgb * phase;
-    float attenuation = exp(-tau);
     float near_tau = near.x + near.y;
+    float behind_tau = behind.x + behind.y;
     float near_attenuation = exp(-near_tau);
-    float scattered = scattered_part(tau, attenuation);
-    float scattered_near = min(scattered_part(near_tau, near_attenuation), scattered);
-    vec3 albedo = mean_albedo(far, near) * scattered_near + mean_albedo(far, behind) * (scattered - scattered_near);
-    return FarFog(albedo * arriving, attenuation);
+    float attenuation = exp(-(all.x + all.y));
+
+    vec3 sun_travel = vec3(0.0, dot(far.up.xyz, far.sun_direction.xyz), 0.0);
+    vec4 air = vec4(0.0, far.height.w * far.sun_direction.w, far.sun_illuminance.w, height);
+    float sun_start = air_optical_depth_to_sun(air, vec3(0.0), sun_travel);
+    float sun_middle = air_optical_depth_to_sun(air, vec3(0.0, climb * near_m, 0.0), sun_travel);
+    float sun_end = air_optical_depth_to_sun(air, vec3(0.0, climb * length_m, 0.0), sun_travel);
+    float phase = phase_of_terms(far.phase, far.sun_direction.xyz, -ray);
+    vec3 sun = far.sun_illuminance.rgb * phase;
+    vec3 ambient = far.ambient.rgb + far.ambient_x.rgb * ray.x + far.ambient_y.rgb * ray.y + far.ambient_z.rgb * ray.z;
+
+    vec3 near_light = ambient * scattered_part(near_tau, near_attenuation) +
+                      sun * scattered_light(near_tau, sun_start, sun_middle);
+    vec3 behind_light = ambient * scattered_part(behind_tau, exp(-behind_tau)) +
+                        sun * scattered_light(behind_tau, sun_middle, sun_end);
+    vec3 radiance = mean_albedo(far, near) * near_light + mean_albedo(far, behind) * near_attenuation * behind_light;
+    return FarFog(radiance, attenuation);
 }
 
 #endif

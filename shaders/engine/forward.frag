@@ -10,7 +10,10 @@
 #include "engine/brdf.glsl"
 #include "engine/material.glsl"
 
+#include "common/light_attenuation.glsl"
+
 layout(set = 0, binding = 0) uniform Frame { FrameParameters frame; };
+layout(constant_id = 2) const bool air_weakens_light = false; // on its way to surfaces
 #if SUN_SHADOW
 #include "engine/sun_visibility.glsl"
 #endif
@@ -109,6 +112,9 @@ vec3 local_light(GpuLight light, Reflection r, vec3 normal, vec3 to_eye) {
     }
     vec3 to_light;
     vec3 irradiance = light_irradiance_normal(light, surface_position, to_light);
+    if (air_weakens_light) {
+        irradiance *= air_transmittance(frame.air, surface_position, light.position_range.xyz - surface_position);
+    }
     return irradiance * reflect_light(r, to_eye, to_light, max(dot(normal, to_light), 0.0));
 }
 
@@ -180,6 +186,9 @@ vec3 lit_radiance(vec3 base, float depth_m) {
 
     vec3 sun_travel = frame.sun_direction.xyz;
     vec3 sun_light = directional_light(r, normal, to_eye, sun_travel, frame.sun_illuminance.rgb);
+    if (air_weakens_light) {
+        sun_light *= air_transmittance_of_sun(frame.air, surface_position, sun_travel);
+    }
 #if SUN_SHADOW
     if (sun_light != vec3(0.0) && dot(geometric, sun_travel) < 0.0) {
         radiance += sun_light * sun_visibility(surface_position, geometric, depth_m);

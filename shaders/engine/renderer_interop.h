@@ -22,6 +22,7 @@ struct FrameParameters {
     vec4 sky_ground;       // rgb
     vec4 sun_direction;    // xyz: unit, in which it travels
     vec4 sun_illuminance;  // rgb lux; 0 without a sun
+    vec4 air;              // see common/light_attenuation.glsl
     vec4 fill_direction[3];
     vec4 fill_illuminance[3];
 };

@@ -13,6 +13,7 @@
 layout(constant_id = 12) const bool has_depth_curve = false;
 #define DEPTH_CURVE has_depth_curve
 
+#include "common/light_attenuation.glsl"
 #include "common/lights.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
@@ -31,6 +32,8 @@ layout(constant_id = 11) const bool has_directed_ambient = false;
 
 layout(constant_id = 13) const uint light_changes = 2; // 0: since the frame before nothing; 1: sun, ambient or the
                                                        // direction of view; 2: local lights, too
+
+layout(constant_id = 14) const bool air_weakens_light = false; // on its way to the froxel
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
@@ -68,6 +71,9 @@ vec3 sun_scattering(RaySegment segment, float depth_m) {
     SUN_VISIBILITY(cascades, cascade_count, shadow_map, u.esm_exponents, size, sun_visibility, visibility_taps,
                    segment, depth_m, visibility)
 #endif
+    if (air_weakens_light) {
+        visibility *= air_transmittance_of_sun(u.air, segment.position, u.sun_direction.xyz);
+    }
     return u.sun_illuminance.rgb * (visibility * phase_function(phase_angle(u.sun_direction.xyz, segment.to_eye)));
 }
 

@@ -41,6 +41,7 @@ struct VolumetricParameters {
     vec4 homogeneous_emission; // rgb, cd/m^3, times emission_scale.x; a 0
     vec4 height_emission;      // the same at and below the base
     vec4 height_law;      // x: base height above the camera, m; y: falloff, 1/m; zw 0
+    vec4 air;             // see common/light_attenuation.glsl
     vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude of the first octave
     vec4 noise_cells;     // x: cells per metre; y: amplitude of an octave over that of the one before; zw 0
     vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0

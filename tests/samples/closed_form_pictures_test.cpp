@@ -267,6 +267,69 @@ TEST_F(ClosedFormPictures, LambertWallUnderTheSun) {
     }
 }
 
+/// Integral of 0.1 e^(-0.3 max(0, y + 1)) over a length, between two heights.
+double height_optical_depth(double from_y, double to_y, double length_m) {
+    const double low = std::max(std::min(from_y, to_y) + 1.0, 0.0);
+    const double high = std::max(std::max(from_y, to_y) + 1.0, 0.0);
+    const double above = high > low ? (std::exp(-0.3 * low) - std::exp(-0.3 * high)) / 0.3 : 0.0;
+    const double below = std::abs(to_y - from_y) - (high - low);
+    return 0.1 * length_m * (above + below) / std::abs(to_y - from_y);
+}
+
+// Fog that scatters nothing: what is left of a wall's light is what the way to it leaves.
+TEST_F(ClosedFormPictures, LightIsWeakenedOnItsWayToAWall) {
+    const auto fog = [&](const char* light_path) {
+        const std::filesystem::path path = folder_ / (std::string(light_path) + ".json");
+        write_text(path, R"({"medium":{"homogeneous":{"extinction_per_m":0.05,"albedo":[0,0,0]},
+            "height":{"extinction_per_m":0.1,"falloff_per_m":0.3,"base_height_m":-1,"albedo":[0,0,0]}},
+            "temporal":{"enabled":false},"light_path":")" +
+                             std::string(light_path) + "\"}");
+        return render({"--fp32", "--fog", path.string()});
+    };
+    const auto largest_difference = [&](const engine::Pixels<float>& dark, auto&& optical_depth) {
+        const engine::Pixels<float> weakened = fog("closed_form");
+        const engine::Pixels<float> all = fog("none");
+        double largest = 0.0;
+        for (std::uint32_t y = 0; y < height; ++y) {
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const std::size_t i = (std::size_t{y} * width + x) * all.channels;
+                const auto light = [&](const engine::Pixels<float>& image) {
+                    return static_cast<double>(image.values[i]) -
+                           (dark.values.empty() ? 0.0 : static_cast<double>(dark.values[i]));
+                };
+                const std::array<double, 3> r = ray(x, y);
+                const double expected = std::exp(-optical_depth(std::array{5.0 * r[0], 5.0 * r[1], -5.0}));
+                largest = std::max(largest, std::abs(light(weakened) / light(all) / expected - 1.0));
+            }
+        }
+        return largest;
+    };
+    add_rectangle(0.0, -5.0, 10.0, lambert({0.5, 0.5, 0.5}));
+    const GltfFile wall = file_;
+    add_light({{"type", "point"}, {"intensity", 20.0}, {"range", 90.0}}, {{"translation", {0.7, 2.0, -1.0}}});
+    EXPECT_LE(largest_difference({},
+                                 [](const std::array<double, 3>& p) {
+                                     const double distance = length({0.7 - p[0], 2.0 - p[1], -1.0 - p[2]});
+                                     return 0.05 * distance + height_optical_depth(p[1], 2.0, distance);
+                                 }),
+              1e-4);
+    file_ = wall;
+    const double tilt_rad = 0.7;
+    const json sun = {{"type", "directional"}, {"intensity", 1000.0}};
+    const json turned = {{"rotation", {-std::sin(0.5 * tilt_rad), 0.0, 0.0, std::cos(0.5 * tilt_rad)}}};
+    add_rectangle(0.0, 2.0, 40.0, lambert({0.5, 0.5, 0.5})); // keeps the sun away
+    add_light(sun, turned);
+    const engine::Pixels<float> shadow = fog("none");
+    file_ = wall;
+    add_light(sun, turned);
+    EXPECT_LE(largest_difference(shadow,
+                                 [&](const std::array<double, 3>& p) {
+                                     const double length_m = 1e3;
+                                     return height_optical_depth(p[1], p[1] + length_m * std::sin(tilt_rad), length_m);
+                                 }),
+              1e-4);
+}
+
 TEST_F(ClosedFormPictures, MaskCutsAtItsCutoffAndBackFacesAreCulled) {
     add_dark_light();
     add_rectangle(0.0, -8.0, 20.0, unlit({0.1, 0.2, 0.3}, 1.0, "OPAQUE"));

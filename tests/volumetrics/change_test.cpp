@@ -256,6 +256,7 @@ TEST_F(Change, OfAMediumIsThereInTheNextFrameAndCostsNoHistory) {
     };
     for (const auto& [name, change] : changes) {
         Scene scene = lit_scene();
+        scene.inputs.settings.light_path = LightPath::none;
         scene.inputs.medium.volumes = {cloud};
         scene.lights = {lamp({-4.0F, 1.0F, -14.0F}, 8.0F, 50.0F)};
         for (int i = 0; i < 4; ++i) {
@@ -270,6 +271,20 @@ TEST_F(Change, OfAMediumIsThereInTheNextFrameAndCostsNoHistory) {
         for (std::size_t i = 0; i < fresh.color.size(); ++i) {
             ASSERT_NEAR(next.color[i].r, fresh.color[i].r, 1e-5F * fresh.color[i].r) << name;
         }
+    }
+}
+
+TEST_F(Change, OfWhatWeakensLightIsSeenWithinEightFrames) {
+    const std::vector<std::pair<const char*, std::function<void(Scene&)>>> changes{
+        {"denser", [](Scene& s) { s.inputs.medium.homogeneous.extinction_per_m = 0.2F; }},
+        {"height fog", [](Scene& s) { s.inputs.medium.height.extinction_per_m = 0.1F; }},
+        {"no longer", [](Scene& s) { s.inputs.settings.light_path = LightPath::none; }},
+    };
+    for (const auto& [name, change] : changes) {
+        Scene scene = lit_scene();
+        scene.lights = {lamp({-4.0F, 1.0F, -14.0F}, 8.0F, 50.0F)};
+        scene.inputs.medium.homogeneous.extinction_per_m = 0.1F;
+        EXPECT_LE(residual(eight_frames_after(scene, change)), 0.01) << name;
     }
 }
 

@@ -166,9 +166,11 @@ protected:
                                       0.0, 1.0);
                     cone *= cone;
                 }
+                const double weakened = std::exp(-extinction * distance);
                 const double cos_theta = glm::dot(travel, -direction);
                 const double phase = (1.0 - g * g) / (4.0 * pi * std::pow(1.0 + g * g - 2.0 * g * cos_theta, 1.5));
-                sum += static_cast<double>(light.intensity_type.r) * window * cone * phase / (distance * distance);
+                sum += static_cast<double>(light.intensity_type.r) * window * cone * phase * weakened /
+                       (distance * distance);
             }
             return extinction * std::exp(-extinction * t) * sum;
         };

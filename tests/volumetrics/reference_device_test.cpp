@@ -53,36 +53,8 @@ INSTANTIATE_TEST_SUITE_P(
         DensityNoise{
             .amplitude = 0.8F, .scale_m = 100.0F, .wind_m_s = {0.7F, -1.0F, 0.4F}, .octaves = 3, .gain = 0.7F}));
 
-/// Shining height fog, a sun and a spot light beside the view, before a black wall at 20 m.
-TEST_F(AgainstReference, LightsInHeightFog) {
-    Scene scene = plain_scene();
-    scene.inputs.medium.homogeneous.extinction_per_m = 0.02F;
-    scene.inputs.medium.height = {.extinction_per_m = 0.2F, .base_height_m = -1.0F, .falloff_per_m = 0.4F};
-    scene.inputs.medium.homogeneous.emission_per_m = {0.001F, 0.002F, 0.003F};
-    scene.inputs.medium.height.emission_per_m = {0.03F, 0.02F, 0.01F};
-    scene.inputs.medium.phase_g = 0.5F;
-    scene.inputs.medium.ambient_radiance = {0.02F, 0.03F, 0.04F};
-    scene.inputs.sun = Sun{glm::normalize(glm::vec3(0.3F, -1.0F, 0.4F)), glm::vec3(2.0F), false};
-    scene.depth_m = [](std::uint32_t, std::uint32_t) { return 20.0; };
-    scene.color = [](std::uint32_t, std::uint32_t) { return glm::vec4(0.0F); };
-
-    reference::Scene truth;
-    truth.medium = scene.inputs.medium;
-    truth.attenuates_light = false; // as the shaders have it
-    truth.sun = reference::DirectionalLight{glm::normalize(glm::dvec3(0.3, -1.0, 0.4)), glm::dvec3(2.0), false};
-    truth.lights = {reference::Light{.position = {3.0, 7.0, -9.0},
-                                     .intensity_cd = glm::dvec3(80.0, 60.0, 40.0),
-                                     .radius_m = 0.02,
-                                     .range_m = 30.0,
-                                     .cone = reference::Cone{glm::normalize(glm::dvec3(-0.3, -1.0, 0.1)), 0.3, 0.9},
-                                     .casts_shadows = false}};
-    const float scale = 1.0F / (std::cos(0.3F) - std::cos(0.9F));
-    scene.lights = {{.position_range = {3.0F, 7.0F, -9.0F, 30.0F},
-                     .intensity_type = {80.0F, 60.0F, 40.0F, 1.0F},
-                     .direction_radius = glm::vec4(glm::normalize(glm::vec3(-0.3F, -1.0F, 0.1F)), 0.02F),
-                     .cone = {scale, -std::cos(0.9F) * scale, 0.0F, 0.0F}}};
-
-    const Result result = render(scene);
+/// Light that fog before a black wall at 20 m sends to the eye, over 2,000 pixels.
+void expect_airlight(const Result& result, const Scene& scene, const reference::Scene& truth) {
     const reference::ImageSize size{scene.image.x, scene.image.y};
     const reference::Camera camera{.world_from_camera = glm::dmat4(1.0), .fov_y_rad = 2.0 * std::atan(tan_y)};
     double error = 0.0;
@@ -104,6 +76,42 @@ TEST_F(AgainstReference, LightsInHeightFog) {
                 std::sqrt(claimed / total));
     EXPECT_LE(std::sqrt(error / total), 1e-2);
     EXPECT_LE(std::abs(bias / sum), 5e-3);
+}
+
+/// Shining height fog, a sun and a spot light beside the view, before a black wall at 20 m.
+TEST_F(AgainstReference, LightsInHeightFog) {
+    Scene scene = plain_scene();
+    scene.inputs.medium.homogeneous.extinction_per_m = 0.02F;
+    scene.inputs.medium.height = {.extinction_per_m = 0.2F, .base_height_m = -1.0F, .falloff_per_m = 0.4F};
+    scene.inputs.medium.homogeneous.emission_per_m = {0.001F, 0.002F, 0.003F};
+    scene.inputs.medium.height.emission_per_m = {0.03F, 0.02F, 0.01F};
+    scene.inputs.medium.phase_g = 0.5F;
+    scene.inputs.medium.ambient_radiance = {0.02F, 0.03F, 0.04F};
+    scene.inputs.sun = Sun{glm::normalize(glm::vec3(0.3F, -1.0F, 0.4F)), glm::vec3(2.0F), false};
+    scene.depth_m = [](std::uint32_t, std::uint32_t) { return 20.0; };
+    scene.color = [](std::uint32_t, std::uint32_t) { return glm::vec4(0.0F); };
+
+    reference::Scene truth;
+    truth.medium = scene.inputs.medium;
+    truth.sun = reference::DirectionalLight{glm::normalize(glm::dvec3(0.3, -1.0, 0.4)), glm::dvec3(2.0), false};
+    truth.lights = {reference::Light{.position = {3.0, 7.0, -9.0},
+                                     .intensity_cd = glm::dvec3(80.0, 60.0, 40.0),
+                                     .radius_m = 0.02,
+                                     .range_m = 30.0,
+                                     .cone = reference::Cone{glm::normalize(glm::dvec3(-0.3, -1.0, 0.1)), 0.3, 0.9},
+                                     .casts_shadows = false}};
+    const float scale = 1.0F / (std::cos(0.3F) - std::cos(0.9F));
+    scene.lights = {{.position_range = {3.0F, 7.0F, -9.0F, 30.0F},
+                     .intensity_type = {80.0F, 60.0F, 40.0F, 1.0F},
+                     .direction_radius = glm::vec4(glm::normalize(glm::vec3(-0.3F, -1.0F, 0.1F)), 0.02F),
+                     .cone = {scale, -std::cos(0.9F) * scale, 0.0F, 0.0F}}};
+
+    for (const LightPath path : {LightPath::none, LightPath::closed_form}) {
+        scene.inputs.settings.light_path = path;
+        truth.attenuates_light = path != LightPath::none;
+        SCOPED_TRACE(truth.attenuates_light ? "light is weakened" : "light is not weakened");
+        expect_airlight(render(scene), scene, truth);
+    }
 }
 
 } // namespace
