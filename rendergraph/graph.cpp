@@ -184,13 +184,13 @@ void GraphBuilder::set_injection_points(std::vector<std::string> names) {
     desc_.points = std::move(names);
 }
 
-const ImageDesc* GraphBuilder::describe(Image image) const {
+std::optional<ImageDesc> GraphBuilder::describe(Image image) const {
     const bool known = image.graph == id_ && image.resource < desc_.resources.size();
-    return known ? &desc_.resources[image.resource].image : nullptr;
+    return known ? std::optional(desc_.resources[image.resource].image) : std::nullopt;
 }
-const BufferDesc* GraphBuilder::describe(Buffer buffer) const {
+std::optional<BufferDesc> GraphBuilder::describe(Buffer buffer) const {
     const bool known = buffer.graph == id_ && buffer.resource < desc_.resources.size();
-    return known ? &desc_.resources[buffer.resource].buffer : nullptr;
+    return known ? std::optional(desc_.resources[buffer.resource].buffer) : std::nullopt;
 }
 
 template <typename Handle>

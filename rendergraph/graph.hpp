@@ -171,8 +171,9 @@ public:
         form_ = 0;
     }
 
-    [[nodiscard]] const ImageDesc* describe(Image image) const;
-    [[nodiscard]] const BufferDesc* describe(Buffer buffer) const;
+    /// What a resource was made as; nothing for a handle of another graph.
+    [[nodiscard]] std::optional<ImageDesc> describe(Image image) const;
+    [[nodiscard]] std::optional<BufferDesc> describe(Buffer buffer) const;
 
     /// Ends the declaration; the builder is empty afterwards and older handles no longer fit it.
     [[nodiscard]] DeclaredGraph finish();

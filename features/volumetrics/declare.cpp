@@ -1,6 +1,7 @@
 // The passes of the feature, as declared on the graph. Callbacks capture handles and plain data by value.
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "features/volumetrics/feature_state.hpp"
 #include "shaders/common/lights.h"
@@ -115,8 +116,8 @@ void Feature::State::declare_clustering(rg::GraphBuilder& graph) {
 }
 
 tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, const ShadowResources& shadow) {
-    const rg::ImageDesc* cascades = graph.describe(shadow.cascades);
-    if (cascades == nullptr || !shadow.parameters.valid()) {
+    const std::optional<rg::ImageDesc> cascades = graph.describe(shadow.cascades);
+    if (!cascades || !shadow.parameters.valid()) {
         return tl::unexpected(
             Error{"The sun casts shadows, so declare_after_shadow_maps needs cascades and parameters."});
     }

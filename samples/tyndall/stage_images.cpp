@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <system_error>
 
 #include <glm/gtc/packing.hpp>
@@ -100,8 +101,8 @@ tl::expected<rg::Buffer, engine::Error> StageImages::host_buffer(rg::GraphBuilde
 
 tl::expected<void, engine::Error> StageImages::capture_image(rg::GraphBuilder& graph, Capture capture,
                                                              rg::Image image) {
-    const rg::ImageDesc* desc = graph.describe(image);
-    if (desc == nullptr) {
+    const std::optional<rg::ImageDesc> desc = graph.describe(image);
+    if (!desc) {
         return {}; // its pass was left out
     }
     capture.image = *desc;

@@ -94,7 +94,7 @@ inline DeclaredGraph random_frame(std::uint32_t seed) {
                 const BufferRange range = below(2) == 0 ? BufferRange{} : BufferRange{half * below(2), half};
                 pass.reads(slots[i].buffer, graphics ? Access::storage_fragment : Access::storage_compute, range);
             } else {
-                const ImageDesc& desc = *graph.describe(slots[i].image);
+                const ImageDesc desc = *graph.describe(slots[i].image);
                 const ImageRange range =
                     below(2) == 0 ? ImageRange{} : ImageRange{below(desc.mips), 1, below(desc.layers), 1};
                 pass.reads(slots[i].image, graphics ? Access::sampled_fragment : Access::sampled_compute, range);
@@ -116,7 +116,7 @@ inline DeclaredGraph random_frame(std::uint32_t seed) {
                     pass.writes(slots[i].buffer, access);
                 }
             } else {
-                const ImageDesc& desc = *graph.describe(slots[i].image);
+                const ImageDesc desc = *graph.describe(slots[i].image);
                 const bool attachment = graphics && desc.mips == 1 && desc.layers == 1;
                 const Access access = attachment ? Access::color_attachment
                                       : graphics ? Access::storage_fragment
