@@ -8,10 +8,10 @@ layout(constant_id = 8) const bool has_depth_curve = false;
 #define DEPTH_CURVE has_depth_curve
 
 #include "common/height_density.glsl"
+#include "common/local_volumes.glsl"
+#include "common/noise.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
-#include "volumetrics/local_volumes.glsl"
-#include "volumetrics/noise.glsl"
 #include "volumetrics/storage.glsl"
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;

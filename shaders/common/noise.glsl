@@ -1,6 +1,6 @@
 // One octave of gradient noise (Perlin, "Improving Noise", 2002, with hashed gradients), of period 256 cells.
-#ifndef TYNDALL_SHADERS_VOLUMETRICS_NOISE_GLSL
-#define TYNDALL_SHADERS_VOLUMETRICS_NOISE_GLSL
+#ifndef TYNDALL_SHADERS_COMMON_NOISE_GLSL
+#define TYNDALL_SHADERS_COMMON_NOISE_GLSL
 
 // One word of hash per lattice point from words per axis: three multiplications, where a hash of three words needs nine.
 uint lattice_hash(uint x, uint y, uint z) {

@@ -1,9 +1,9 @@
 // Boxes and ellipsoids of fog in a slice of the ray, by their exact overlap with it: a point test would make their faces
 // flicker from slice to slice.
-#ifndef TYNDALL_SHADERS_VOLUMETRICS_LOCAL_VOLUMES_GLSL
-#define TYNDALL_SHADERS_VOLUMETRICS_LOCAL_VOLUMES_GLSL
+#ifndef TYNDALL_SHADERS_COMMON_LOCAL_VOLUMES_GLSL
+#define TYNDALL_SHADERS_COMMON_LOCAL_VOLUMES_GLSL
 
-#include "volumetrics/interop.h"
+#include "local_volume.h"
 
 // As VolumeShape and VolumeBlend of features/volumetrics/local_volume.hpp.
 const float shape_ellipsoid = 1.0;
