@@ -56,6 +56,12 @@ struct SunShadow {
     gpu::SunCascades values;
 };
 
+/// From the point `after_shadow_maps` on, when a point or spot light casts shadows: see shaders/common/local_shadow.h.
+struct LocalShadows {
+    rg::Image maps;     ///< D32 2D array
+    rg::Buffer records; ///< gpu::LocalShadow[], storage
+};
+
 /// `depth` from `after_depth` on, `color` from `after_opaque` on. Who changes an image puts the new version here.
 struct SceneImages {
     rg::Image color; ///< linear radiance, cd/m^2

@@ -13,12 +13,18 @@ namespace {
 /// times the size of a froxel away.
 constexpr double shadow_edge_per_rad = 200.0;
 
+/// Whatever the number of its map is.
+bool casts_shadow(const gpu::GpuLight& light) {
+    return light.cone.z > 0.5F;
+}
+
 bool is_same_light(const gpu::GpuLight& a, const gpu::GpuLight& b) {
     const glm::dvec3 p(a.position_range);
     const glm::dvec3 q(b.position_range);
     return glm::distance(p, q) <= 2e-7 * (glm::length(p) + glm::length(q)) &&
            a.position_range.w == b.position_range.w && a.intensity_type == b.intensity_type &&
-           a.direction_radius == b.direction_radius && a.cone == b.cone;
+           a.direction_radius == b.direction_radius && glm::vec2(a.cone) == glm::vec2(b.cone) &&
+           casts_shadow(a) == casts_shadow(b);
 }
 
 gpu::GpuLight dark(gpu::GpuLight light) {
@@ -119,7 +125,9 @@ std::vector<LightChange> light_changes(const FrameInputs& frame, const FrameMemo
     std::vector<LightChange> changes;
     for (std::size_t i = 0; i < std::max(was.size(), is.size()); ++i) {
         const gpu::GpuLight old = i < was.size() ? was[i] : dark(is[i]);
-        changes.push_back({old, i < is.size() ? is[i] : dark(old)});
+        // A light that begins or ceases to cast shadows lights other places: as if it went out.
+        const bool stays = i < is.size() && casts_shadow(is[i]) == casts_shadow(old);
+        changes.push_back({old, stays ? is[i] : dark(old)});
     }
     constexpr std::size_t most = TYNDALL_LIGHT_CHANGE_COUNT;
     if (changes.size() > most) {

@@ -183,6 +183,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     const LightingVariant variant{.storage = inputs.settings.storage,
                                   .sun_shadow = frame->sun_shadow,
                                   .lights = frame->lights,
+                                  .local_shadow = frame->local_shadow,
                                   .history = inputs.settings.temporal.enabled};
     const GridSettings& grid = inputs.settings.grid;
     const VisibilitySettings& visibility = inputs.settings.visibility;
@@ -228,12 +229,15 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         pass.reads(frame->clusters->parameters, Access::uniform_compute)
             .reads(frame->clusters->masks, Access::storage_compute);
     }
+    if (variant.local_shadow) {
+        pass.reads(shadow.local_maps, Access::sampled_compute).reads(shadow.local_records, Access::storage_compute);
+    }
     pass.writes(in_scattered, Access::storage_compute);
     pass.executes([=, dispatch = covering(*program, group, grid.width, grid.height, grid.slices),
-                   parameters = frame->parameter_buffer, shadow_map = frame->shadow_map, cascades = shadow.parameters,
+                   parameters = frame->parameter_buffer, shadow_map = frame->shadow_map,
                    clusters = frame->clusters.value_or(ClusterResources{}), cold = frame->cold, linear_sampler = linear,
                    nearest_sampler = nearest](PassContext& ctx) {
-        std::array<Binding, 8> bindings{};
+        std::array<Binding, 10> bindings{};
         std::size_t count = 0;
         bindings[count++] = ctx.uniform(0, parameters);
         bindings[count++] = ctx.storage(1, in_scattered);
@@ -241,7 +245,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
             bindings[count++] =
                 ctx.sampled(2, shadow_map, nearest_sampler,
                             visibility.method == SunVisibility::prefiltered ? array_view : depth_array_view);
-            bindings[count++] = ctx.uniform(3, cascades);
+            bindings[count++] = ctx.uniform(3, shadow.parameters);
         }
         if (variant.lights != LocalLights::none) {
             bindings[count++] = compact ? ctx.uniform(4, light_buffer) : ctx.storage(4, light_buffer);
@@ -254,6 +258,10 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
             bindings[count++] = ctx.sampled(7, history, linear_sampler);
             const std::uint32_t valid = !cold && ctx.history_valid(history) ? 1 : 0;
             ctx.vk().CmdPushConstants(ctx.cmd(), dispatch.program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 4, &valid);
+        }
+        if (variant.local_shadow) {
+            bindings[count++] = ctx.sampled(8, shadow.local_maps, nearest_sampler, depth_array_view);
+            bindings[count++] = ctx.storage(9, shadow.local_records);
         }
         run(ctx, dispatch, std::span(bindings).first(count));
     });

@@ -1,5 +1,6 @@
 #include "features/volumetrics/feature.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -209,6 +210,8 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
         const bool cluster = inputs.settings.clusters && light_count > 1;
         const bool compact = light_count <= TYNDALL_COMPACT_LIGHT_COUNT;
         frame.lights = !cluster ? LocalLights::all : compact ? LocalLights::clustered_compact : LocalLights::clustered;
+        frame.local_shadow = std::any_of(inputs.lights.begin(), inputs.lights.end(),
+                                         [](const gpu::GpuLight& l) { return l.cone.z > 0.5F; });
     }
     state.frame = frame;
     if (auto made = state.prepare_programs(); !made) {
@@ -275,6 +278,15 @@ tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& g
     } else {
         state.omit("sun shadows (ESM downsample and blur)",
                    shines(frame.inputs) ? "the sun casts no shadow" : "there is no sun");
+    }
+    if (frame.local_shadow && (!resources.local_maps.valid() || !resources.local_records.valid())) {
+        return tl::unexpected(
+            Error{"A local light casts shadows (GpuLight::cone.z), so declare_after_shadow_maps needs "
+                  "local_maps and local_records."});
+    }
+    if (!frame.local_shadow) {
+        state.omit("shadows of local lights",
+                   frame.lights == LocalLights::none ? "there is no local light" : "no local light casts one");
     }
     if (!weakens_light(frame.inputs.medium, frame.inputs.settings)) {
         state.omit("weakening of light on its way", frame.inputs.settings.light_path == LightPath::none

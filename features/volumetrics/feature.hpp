@@ -42,10 +42,13 @@ struct FrameBeginResources {
     rg::Buffer lights;
 };
 
-/// Needed only when the sun casts shadows; otherwise invalid handles.
+/// The first two are needed only when the sun casts shadows, the others only when a local light does (its
+/// GpuLight::cone.z); otherwise invalid handles.
 struct ShadowResources {
     rg::Image cascades;    ///< depth array, a layer a cascade (4 at most), square, 0 at the light, 1 where it is empty
     rg::Buffer parameters; ///< gpu::SunCascades
+    rg::Image local_maps = {};     ///< depth array, square: see shaders/common/local_shadow.h
+    rg::Buffer local_records = {}; ///< gpu::LocalShadow, one for each light that casts shadows
 };
 
 struct OpaqueResources {

@@ -19,6 +19,7 @@ struct FrameState {
     bool depth_curve = false; ///< the depth law is one
     bool emission = false;    ///< the medium emits somewhere
     LocalLights lights = LocalLights::none;
+    bool local_shadow = false; ///< some local light casts one
     Program density_injection;
     Program light_clustering;
     Program fog_on_opaque;

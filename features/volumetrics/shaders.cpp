@@ -17,38 +17,62 @@
 #include "spirv/esm_blur.h"
 #include "spirv/esm_downsample.h"
 #include "spirv/fog_on_opaque.h"
-#include "spirv/froxel_lighting_fp16_s0_l0_h0.h"
-#include "spirv/froxel_lighting_fp16_s0_l0_h1.h"
-#include "spirv/froxel_lighting_fp16_s0_l1_h0.h"
-#include "spirv/froxel_lighting_fp16_s0_l1_h1.h"
-#include "spirv/froxel_lighting_fp16_s0_l2_h0.h"
-#include "spirv/froxel_lighting_fp16_s0_l2_h1.h"
-#include "spirv/froxel_lighting_fp16_s0_l3_h0.h"
-#include "spirv/froxel_lighting_fp16_s0_l3_h1.h"
-#include "spirv/froxel_lighting_fp16_s1_l0_h0.h"
-#include "spirv/froxel_lighting_fp16_s1_l0_h1.h"
-#include "spirv/froxel_lighting_fp16_s1_l1_h0.h"
-#include "spirv/froxel_lighting_fp16_s1_l1_h1.h"
-#include "spirv/froxel_lighting_fp16_s1_l2_h0.h"
-#include "spirv/froxel_lighting_fp16_s1_l2_h1.h"
-#include "spirv/froxel_lighting_fp16_s1_l3_h0.h"
-#include "spirv/froxel_lighting_fp16_s1_l3_h1.h"
-#include "spirv/froxel_lighting_fp32_s0_l0_h0.h"
-#include "spirv/froxel_lighting_fp32_s0_l0_h1.h"
-#include "spirv/froxel_lighting_fp32_s0_l1_h0.h"
-#include "spirv/froxel_lighting_fp32_s0_l1_h1.h"
-#include "spirv/froxel_lighting_fp32_s0_l2_h0.h"
-#include "spirv/froxel_lighting_fp32_s0_l2_h1.h"
-#include "spirv/froxel_lighting_fp32_s0_l3_h0.h"
-#include "spirv/froxel_lighting_fp32_s0_l3_h1.h"
-#include "spirv/froxel_lighting_fp32_s1_l0_h0.h"
-#include "spirv/froxel_lighting_fp32_s1_l0_h1.h"
-#include "spirv/froxel_lighting_fp32_s1_l1_h0.h"
-#include "spirv/froxel_lighting_fp32_s1_l1_h1.h"
-#include "spirv/froxel_lighting_fp32_s1_l2_h0.h"
-#include "spirv/froxel_lighting_fp32_s1_l2_h1.h"
-#include "spirv/froxel_lighting_fp32_s1_l3_h0.h"
-#include "spirv/froxel_lighting_fp32_s1_l3_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l00_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l00_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l10_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l10_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l11_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l11_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l20_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l20_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l21_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l21_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l30_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l30_h1.h"
+#include "spirv/froxel_lighting_fp16_s0_l31_h0.h"
+#include "spirv/froxel_lighting_fp16_s0_l31_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l00_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l00_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l10_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l10_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l11_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l11_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l20_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l20_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l21_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l21_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l30_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l30_h1.h"
+#include "spirv/froxel_lighting_fp16_s1_l31_h0.h"
+#include "spirv/froxel_lighting_fp16_s1_l31_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l00_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l00_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l10_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l10_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l11_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l11_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l20_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l20_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l21_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l21_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l30_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l30_h1.h"
+#include "spirv/froxel_lighting_fp32_s0_l31_h0.h"
+#include "spirv/froxel_lighting_fp32_s0_l31_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l00_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l00_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l10_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l10_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l11_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l11_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l20_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l20_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l21_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l21_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l30_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l30_h1.h"
+#include "spirv/froxel_lighting_fp32_s1_l31_h0.h"
+#include "spirv/froxel_lighting_fp32_s1_l31_h1.h"
 #include "spirv/full_screen.h"
 #include "spirv/light_clustering.h"
 
@@ -74,11 +98,15 @@ constexpr ShaderBinding emitting_accumulation_bindings[] = {
 constexpr ShaderBinding fog_bindings[] = {{0, uniform}, {1, sampled}, {2, sampled}};
 
 // Numbered as in froxel_lighting.comp; which of them a variant has follows from its index below.
-constexpr ShaderBinding lighting_bindings[] = {{0, uniform},        {1, storage_image},  {2, sampled},
-                                               {3, uniform},        {4, storage_buffer}, {5, uniform},
-                                               {6, storage_buffer}, {7, sampled}};
+constexpr ShaderBinding lighting_bindings[] = {
+    {0, uniform}, {1, storage_image},  {2, sampled}, {3, uniform}, {4, storage_buffer},
+    {5, uniform}, {6, storage_buffer}, {7, sampled}, {8, sampled}, {9, storage_buffer}};
 
-constexpr bool has_binding(std::uint32_t binding, bool sun_shadow, std::uint32_t lights, bool history) {
+/// Kinds of local lights: those without shadows as LIGHTS counts them, then the same three with shadows.
+constexpr std::uint32_t light_kinds = 7;
+
+constexpr bool has_binding(std::uint32_t binding, bool sun_shadow, std::uint32_t light_kind, bool history) {
+    const std::uint32_t lights = light_kind > 3 ? light_kind - 3 : light_kind;
     switch (binding) {
     case 2:
     case 3: return sun_shadow;
@@ -86,23 +114,26 @@ constexpr bool has_binding(std::uint32_t binding, bool sun_shadow, std::uint32_t
     case 5:
     case 6: return lights >= 2;
     case 7: return history;
+    case 8:
+    case 9: return light_kind > 3;
     default: return true;
     }
 }
 
 struct LightingBindings {
-    std::array<ShaderBinding, 8> list{};
+    std::array<ShaderBinding, 10> list{};
     std::size_t count = 0;
 };
 
-/// By variant without the storage format: (sun_shadow * 4 + lights) * 2 + history.
-constexpr std::array<LightingBindings, 16> lighting_binding_lists = [] {
-    std::array<LightingBindings, 16> lists{};
+/// By variant without the storage format: (sun_shadow * light_kinds + kind of lights) * 2 + history.
+constexpr std::array<LightingBindings, 4 * light_kinds> lighting_binding_lists = [] {
+    std::array<LightingBindings, 4 * light_kinds> lists{};
     for (std::uint32_t i = 0; i < lists.size(); ++i) {
+        const std::uint32_t kind = (i / 2) % light_kinds;
         for (const ShaderBinding& binding : lighting_bindings) {
-            if (has_binding(binding.binding, i / 8 == 1, (i / 2) % 4, i % 2 == 1)) {
+            if (has_binding(binding.binding, i / 2 >= light_kinds, kind, i % 2 == 1)) {
                 lists[i].list[lists[i].count] = binding;
-                if (binding.binding == 4 && (i / 2) % 4 == 3) {
+                if (binding.binding == 4 && kind % 3 == 0 && kind > 0) { // clustered_compact
                     lists[i].list[lists[i].count].type = uniform;
                 }
                 ++lists[i].count;
@@ -114,17 +145,25 @@ constexpr std::array<LightingBindings, 16> lighting_binding_lists = [] {
 
 /// By variant, storage format first.
 const std::span<const std::uint32_t> lighting_code[] = {
-    froxel_lighting_fp16_s0_l0_h0, froxel_lighting_fp16_s0_l0_h1, froxel_lighting_fp16_s0_l1_h0,
-    froxel_lighting_fp16_s0_l1_h1, froxel_lighting_fp16_s0_l2_h0, froxel_lighting_fp16_s0_l2_h1,
-    froxel_lighting_fp16_s0_l3_h0, froxel_lighting_fp16_s0_l3_h1, froxel_lighting_fp16_s1_l0_h0,
-    froxel_lighting_fp16_s1_l0_h1, froxel_lighting_fp16_s1_l1_h0, froxel_lighting_fp16_s1_l1_h1,
-    froxel_lighting_fp16_s1_l2_h0, froxel_lighting_fp16_s1_l2_h1, froxel_lighting_fp16_s1_l3_h0,
-    froxel_lighting_fp16_s1_l3_h1, froxel_lighting_fp32_s0_l0_h0, froxel_lighting_fp32_s0_l0_h1,
-    froxel_lighting_fp32_s0_l1_h0, froxel_lighting_fp32_s0_l1_h1, froxel_lighting_fp32_s0_l2_h0,
-    froxel_lighting_fp32_s0_l2_h1, froxel_lighting_fp32_s0_l3_h0, froxel_lighting_fp32_s0_l3_h1,
-    froxel_lighting_fp32_s1_l0_h0, froxel_lighting_fp32_s1_l0_h1, froxel_lighting_fp32_s1_l1_h0,
-    froxel_lighting_fp32_s1_l1_h1, froxel_lighting_fp32_s1_l2_h0, froxel_lighting_fp32_s1_l2_h1,
-    froxel_lighting_fp32_s1_l3_h0, froxel_lighting_fp32_s1_l3_h1,
+    froxel_lighting_fp16_s0_l00_h0, froxel_lighting_fp16_s0_l00_h1, froxel_lighting_fp16_s0_l10_h0,
+    froxel_lighting_fp16_s0_l10_h1, froxel_lighting_fp16_s0_l20_h0, froxel_lighting_fp16_s0_l20_h1,
+    froxel_lighting_fp16_s0_l30_h0, froxel_lighting_fp16_s0_l30_h1, froxel_lighting_fp16_s0_l11_h0,
+    froxel_lighting_fp16_s0_l11_h1, froxel_lighting_fp16_s0_l21_h0, froxel_lighting_fp16_s0_l21_h1,
+    froxel_lighting_fp16_s0_l31_h0, froxel_lighting_fp16_s0_l31_h1, froxel_lighting_fp16_s1_l00_h0,
+    froxel_lighting_fp16_s1_l00_h1, froxel_lighting_fp16_s1_l10_h0, froxel_lighting_fp16_s1_l10_h1,
+    froxel_lighting_fp16_s1_l20_h0, froxel_lighting_fp16_s1_l20_h1, froxel_lighting_fp16_s1_l30_h0,
+    froxel_lighting_fp16_s1_l30_h1, froxel_lighting_fp16_s1_l11_h0, froxel_lighting_fp16_s1_l11_h1,
+    froxel_lighting_fp16_s1_l21_h0, froxel_lighting_fp16_s1_l21_h1, froxel_lighting_fp16_s1_l31_h0,
+    froxel_lighting_fp16_s1_l31_h1, froxel_lighting_fp32_s0_l00_h0, froxel_lighting_fp32_s0_l00_h1,
+    froxel_lighting_fp32_s0_l10_h0, froxel_lighting_fp32_s0_l10_h1, froxel_lighting_fp32_s0_l20_h0,
+    froxel_lighting_fp32_s0_l20_h1, froxel_lighting_fp32_s0_l30_h0, froxel_lighting_fp32_s0_l30_h1,
+    froxel_lighting_fp32_s0_l11_h0, froxel_lighting_fp32_s0_l11_h1, froxel_lighting_fp32_s0_l21_h0,
+    froxel_lighting_fp32_s0_l21_h1, froxel_lighting_fp32_s0_l31_h0, froxel_lighting_fp32_s0_l31_h1,
+    froxel_lighting_fp32_s1_l00_h0, froxel_lighting_fp32_s1_l00_h1, froxel_lighting_fp32_s1_l10_h0,
+    froxel_lighting_fp32_s1_l10_h1, froxel_lighting_fp32_s1_l20_h0, froxel_lighting_fp32_s1_l20_h1,
+    froxel_lighting_fp32_s1_l30_h0, froxel_lighting_fp32_s1_l30_h1, froxel_lighting_fp32_s1_l11_h0,
+    froxel_lighting_fp32_s1_l11_h1, froxel_lighting_fp32_s1_l21_h0, froxel_lighting_fp32_s1_l21_h1,
+    froxel_lighting_fp32_s1_l31_h0, froxel_lighting_fp32_s1_l31_h1,
 };
 
 } // namespace
@@ -150,9 +189,9 @@ ShaderCode esm_blur_shader() {
 }
 
 ShaderCode froxel_lighting_shader(const LightingVariant& variant) {
-    const std::size_t index =
-        (static_cast<std::size_t>(variant.sun_shadow) * 4 + static_cast<std::size_t>(variant.lights)) * 2 +
-        static_cast<std::size_t>(variant.history);
+    const std::size_t kind = static_cast<std::size_t>(variant.lights) + (variant.local_shadow ? 3 : 0);
+    const std::size_t index = (static_cast<std::size_t>(variant.sun_shadow) * light_kinds + kind) * 2 +
+                              static_cast<std::size_t>(variant.history);
     const LightingBindings& bindings = lighting_binding_lists[index];
     const std::size_t format = variant.storage == StorageFormat::fp16 ? 0 : lighting_binding_lists.size();
     return {"froxel lighting", lighting_code[format + index], std::span(bindings.list).first(bindings.count),

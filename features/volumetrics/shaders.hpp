@@ -30,6 +30,7 @@ struct LightingVariant {
     StorageFormat storage = StorageFormat::fp16;
     bool sun_shadow = false;
     LocalLights lights = LocalLights::none;
+    bool local_shadow = false; ///< of some of the lights, so there are some
     bool history = false;
 };
 

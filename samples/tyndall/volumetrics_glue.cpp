@@ -99,7 +99,11 @@ void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& black
 void VolumetricsGlue::after_shadow_maps(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
     volumetrics::ShadowResources shadow;
     if (const engine::SunShadow* sun = blackboard.find<engine::SunShadow>()) {
-        shadow = {sun->cascades, sun->parameters};
+        shadow = {.cascades = sun->cascades, .parameters = sun->parameters};
+    }
+    if (const engine::LocalShadows* local = blackboard.find<engine::LocalShadows>()) {
+        shadow.local_maps = local->maps;
+        shadow.local_records = local->records;
     }
     keep_error(feature_->declare_after_shadow_maps(graph, shadow));
     if (feature_->volume()) {

@@ -11,7 +11,8 @@ struct GpuLight {
     vec4 intensity_type;   // rgb candela; w: 0 point, 1 spot
     vec4 direction_radius; // xyz unit direction in which a spot's light travels; w: radius of the source, m
     vec4 cone; // x: angle scale, y: angle offset of KHR_lights_punctual (scale = 1 / max(0.001, cos inner - cos outer),
-               // offset = -cos outer * scale); zw 0. A point light has x = 0, y = 1.
+               // offset = -cos outer * scale). A point light has x = 0, y = 1. z: 0, or 1 + the number of its
+               // LocalShadow (common/local_shadow.h); w 0
 };
 
 TYNDALL_INTEROP_END

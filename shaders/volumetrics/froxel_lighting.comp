@@ -6,7 +6,8 @@
 //
 // SUN_SHADOW 1: sun through the ESM or the cascades, as `visibility` wants. LIGHTS 0: none; 1: every froxel visits all; 2: by clusters; 3: by clusters, from the
 // compact copy of at most 256 lights in a uniform buffer, which processors fetch several times faster than a storage
-// buffer when the index differs between lanes. HISTORY 1: temporal reprojection.
+// buffer when the index differs between lanes. LOCAL_SHADOW 1: of them those that cast shadows do. HISTORY 1: temporal
+// reprojection.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -47,6 +48,11 @@ layout(set = 0, binding = 3) uniform Sun { SunCascades cascades; };
 #endif
 #if LIGHTS
 #include "common/light_clusters.glsl"
+#if LOCAL_SHADOW
+#include "common/local_shadow.glsl"
+layout(set = 0, binding = 8) uniform sampler2DArray local_shadow_maps; // nearest, clamps
+layout(set = 0, binding = 9, std430) readonly restrict buffer LocalShadows { LocalShadow local_shadows[]; };
+#endif
 #include "volumetrics/local_lights.glsl"
 #if LIGHTS == 3
 layout(set = 0, binding = 4) uniform Lights { GpuLight lights[TYNDALL_COMPACT_LIGHT_COUNT]; };

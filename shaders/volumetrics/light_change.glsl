@@ -4,6 +4,10 @@
 
 #include "common/lights.glsl"
 
+// Froxels at the edge of a shadow change by as much per radian that its light moves: a caster stands some two hundred
+// times the size of a froxel away.
+const float shadow_edge_per_rad = 200.0;
+
 // A light's irradiance without its intensity, 1/m^2, within reach_m of a point from which d leads to the light: no less
 // than anywhere there, and where only the cone's edge makes it less.
 struct FalloffBounds {
@@ -36,14 +40,15 @@ float light_change(GpuLight before, GpuLight now, vec3 position, float reach_m, 
     FalloffBounds was = falloff_bounds(before, d_before, reach_m);
     FalloffBounds is = falloff_bounds(now, d_now, reach_m);
     bool stands = before.position_range == now.position_range && before.direction_radius == now.direction_radius &&
-                  before.cone == now.cone;
+                  before.cone.xy == now.cone.xy;
     vec3 brighter = max(before.intensity_type.rgb * was.largest, now.intensity_type.rgb * is.largest);
     vec3 came = now.intensity_type.rgb * is.largest - before.intensity_type.rgb * mix(was.at_edge, was.largest, stands);
     vec3 went = before.intensity_type.rgb * was.largest - now.intensity_type.rgb * mix(is.at_edge, is.largest, stands);
     vec3 change = max(came, went) / max(brighter, 1e-30);
     // The angle under which the light's way is seen; beside the light, its falloff over that way.
     float nearest_m = max(min(length(d_before), length(d_now)) - reach_m, smallest_light_radius_m);
-    float moved = distance(before.position_range.xyz, now.position_range.xyz) * (2.0 + steepness) / nearest_m;
+    float shadow = now.cone.z > 0.5 ? shadow_edge_per_rad : 0.0;
+    float moved = distance(before.position_range.xyz, now.position_range.xyz) * (2.0 + steepness + shadow) / nearest_m;
     float any = max(brighter.r, max(brighter.g, brighter.b));
     return mix(0.0, min(max(change.r, max(change.g, change.b)) + moved, 1.0), any > 0.0);
 }

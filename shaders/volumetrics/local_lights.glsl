@@ -59,8 +59,19 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
     return angle * phase / (h * length_m);
 }
 
-// Adds the in-scattered radiance per scattering coefficient from light `index`. Window, cone and what the air takes are
-// taken at the sample. Exactly 0 beyond the light's range. A macro, since a buffer cannot be passed to a function.
+// What of the light's shadow map falls on the segment is multiplied to `fade`, at the sample.
+#if LOCAL_SHADOW
+#define FADE_IN_SHADOW(light_cone, segment, fade)                                                                      \
+    if (casts_local_shadow(light_cone)) {                                                                              \
+        fade *= local_visibility(local_shadows[local_shadow_index(light_cone)], local_shadow_maps, segment.position);  \
+    }
+#else
+#define FADE_IN_SHADOW(light_cone, segment, fade)
+#endif
+
+// Adds the in-scattered radiance per scattering coefficient from light `index`. Window, cone, shadow and what the air
+// takes are taken at the sample. Exactly 0 beyond the light's range. A macro, since a buffer cannot be passed to a
+// function.
 #define ADD_SCATTERED_FROM_LIGHT(lights, index, segment, sum)                                                          \
     {                                                                                                                  \
         vec4 position_range = lights[index].position_range;                                                            \
@@ -74,6 +85,7 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
             float cone = spot_cone(direction_radius.xyz, lights[index].cone.xy, to_light);                             \
             fade *= intensity_type.w > 0.5 ? cone : 1.0;                                                               \
             fade *= air_weakens_light ? air_transmittance(u.air, segment.position, d) : 1.0;                           \
+            FADE_IN_SHADOW(lights[index].cone, segment, fade)                                                          \
             float radius_m = max(direction_radius.w, smallest_light_radius_m);                                         \
             sum += intensity_type.rgb * (fade * scattered_inverse_square(segment, d, to_light, radius_m));             \
         }                                                                                                              \
