@@ -21,6 +21,7 @@ void ForwardInputs::find(rg::Blackboard& blackboard, bool transparent) {
     }
     if (lights) {
         clusters = on<LightClusters>(blackboard);
+        local_shadows = on<LocalShadows>(blackboard);
     }
     if (transparent) {
         scattering = on<ScatteringVolumeImages>(blackboard);
@@ -32,6 +33,7 @@ ForwardVariant ForwardInputs::variant(bool transparent) const {
             .lights = !lights    ? LocalLights::none
                       : clusters ? LocalLights::of_cluster
                                  : LocalLights::all,
+            .local_shadow = local_shadows.has_value(),
             .transparent = transparent,
             .scattering = scattering.has_value(),
             .air = air};
@@ -45,6 +47,10 @@ void ForwardInputs::declare(rg::PassBuilder& pass) const {
     if (lights) {
         pass.reads(lights->lights, rg::Access::storage_graphics);
     }
+    if (local_shadows) {
+        pass.reads(local_shadows->maps, rg::Access::sampled_graphics)
+            .reads(local_shadows->records, rg::Access::storage_graphics);
+    }
     if (clusters) {
         pass.reads(clusters->parameters, rg::Access::uniform_graphics)
             .reads(clusters->masks, rg::Access::storage_graphics);
@@ -56,7 +62,7 @@ void ForwardInputs::declare(rg::PassBuilder& pass) const {
 }
 
 void ForwardInputs::push(rg::PassContext& ctx, VkPipelineLayout layout) const {
-    std::array<rg::Binding, 9> bindings;
+    std::array<rg::Binding, 11> bindings;
     std::size_t count = 0;
     const auto bind = [&](const rg::Binding& binding) { bindings[count++] = binding; };
     bind(ctx.uniform(0, parameters));
@@ -75,6 +81,10 @@ void ForwardInputs::push(rg::PassContext& ctx, VkPipelineLayout layout) const {
     if (scattering) {
         bind(ctx.uniform(7, scattering->parameters));
         bind(ctx.sampled(8, scattering->accumulated, linear_sampler, {.type = VK_IMAGE_VIEW_TYPE_2D_ARRAY}));
+    }
+    if (local_shadows) {
+        bind(ctx.sampled(9, local_shadows->maps, nearest_sampler, {.type = VK_IMAGE_VIEW_TYPE_2D_ARRAY}));
+        bind(ctx.storage(10, local_shadows->records));
     }
     ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, std::span(bindings).first(count));
 }

@@ -16,11 +16,13 @@ struct ForwardInputs {
     rg::Buffer instances;
     std::optional<SunShadow> sun;
     std::optional<SceneLights> lights; ///< with at least one light
+    std::optional<LocalShadows> local_shadows;
     std::optional<LightClusters> clusters;
     std::optional<ScatteringVolumeImages> scattering; ///< for transparents only
     bool air = false;                                 ///< weakens light on its way
     VkSampler shadow_sampler = VK_NULL_HANDLE;
     VkSampler linear_sampler = VK_NULL_HANDLE;
+    VkSampler nearest_sampler = VK_NULL_HANDLE;
 
     /// From what is on the blackboard now.
     void find(rg::Blackboard& blackboard, bool transparent);

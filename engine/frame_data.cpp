@@ -84,6 +84,8 @@ tl::expected<FrameData, Error> FrameData::create(const Device& device, std::uint
             {&slot.lights, std::max<std::size_t>(light_count, 1) * sizeof(gpu::GpuLight),
              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
             {&slot.sun, sizeof(gpu::SunCascades), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
+            {&slot.local_shadows, std::max<std::size_t>(light_count, 1) * sizeof(gpu::LocalShadow),
+             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
         };
         for (const Want& want : wanted) {
             auto made = Buffer::create(device, want.size_bytes, want.usage, MemoryUse::upload);
@@ -101,12 +103,14 @@ void FrameData::write_parameters(std::uint32_t slot, const gpu::FrameParameters&
 }
 
 void FrameData::write_places(std::uint32_t slot, const glm::dvec3& origin_m, const std::vector<Instance>& instances,
-                             const std::vector<Light>& lights, const LightSettings& settings) {
+                             const std::vector<Light>& lights, const LightSettings& settings,
+                             const std::vector<ShadowedLight>& shadowed) {
     Slot& into = slots_[slot];
-    if (into.origin_m == origin_m) {
+    if (into.origin_m == origin_m && into.shadowed == shadowed) {
         return;
     }
     into.origin_m = origin_m;
+    into.shadowed = shadowed;
     const std::span<gpu::GpuInstance> places = into.instances.mapped_as<gpu::GpuInstance>();
     for (std::size_t i = 0; i < instances.size(); ++i) {
         places[i] = make_gpu_instance(instances[i], origin_m);
@@ -115,7 +119,14 @@ void FrameData::write_places(std::uint32_t slot, const glm::dvec3& origin_m, con
     for (const Light& light : lights) {
         into.light_records.push_back(make_gpu_light(light, origin_m, settings));
     }
+    for (std::size_t record = 0; record < shadowed.size(); ++record) {
+        into.light_records[shadowed[record].light].cone.z = static_cast<float>(record + 1);
+    }
     std::copy(into.light_records.begin(), into.light_records.end(), into.lights.mapped_as<gpu::GpuLight>().begin());
+}
+
+void FrameData::write_local_shadows(std::uint32_t slot, std::span<const gpu::LocalShadow> records) {
+    std::copy(records.begin(), records.end(), slots_[slot].local_shadows.mapped_as<gpu::LocalShadow>().begin());
 }
 
 void FrameData::write_sun(std::uint32_t slot, const gpu::SunCascades& sun) {

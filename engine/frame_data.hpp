@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <tl/expected.hpp>
 
 #include "engine/camera.hpp"
 #include "engine/lights.hpp"
+#include "engine/local_shadows.hpp"
 #include "engine/memory.hpp"
 #include "engine/renderer_settings.hpp"
 #include "shaders/engine/renderer_interop.h"
@@ -37,15 +39,19 @@ public:
         Buffer lights;                            ///< gpu::GpuLight
         std::vector<gpu::GpuLight> light_records; ///< what `lights` holds
         Buffer sun;                               ///< gpu::SunCascades
+        Buffer local_shadows;                     ///< gpu::LocalShadow
         std::optional<glm::dvec3> origin_m;       ///< render space that instances and lights are in
+        std::vector<ShadowedLight> shadowed;      ///< as `lights` names their records
     };
     [[nodiscard]] static tl::expected<FrameData, Error> create(const Device& device, std::uint32_t frames_in_flight,
                                                                std::size_t instance_count, std::size_t light_count);
 
     void write_parameters(std::uint32_t slot, const gpu::FrameParameters& parameters);
-    /// Written anew only when the origin has moved.
+    /// Written anew only when the origin has moved or other lights cast shadows.
     void write_places(std::uint32_t slot, const glm::dvec3& origin_m, const std::vector<Instance>& instances,
-                      const std::vector<Light>& lights, const LightSettings& settings);
+                      const std::vector<Light>& lights, const LightSettings& settings,
+                      const std::vector<ShadowedLight>& shadowed);
+    void write_local_shadows(std::uint32_t slot, std::span<const gpu::LocalShadow> records);
     void write_sun(std::uint32_t slot, const gpu::SunCascades& sun);
 
     [[nodiscard]] const Slot& slot(std::uint32_t index) const { return slots_[index]; }

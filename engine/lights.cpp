@@ -42,11 +42,15 @@ LightRoles assign_lights(const Scene& scene) {
     return roles;
 }
 
-gpu::GpuLight make_gpu_light(const Light& light, const glm::dvec3& origin_m, const LightSettings& settings) {
+double light_range_m(const Light& light, const LightSettings& settings) {
     const float brightest = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
-    const double range_m = light.range_m.value_or(std::sqrt(static_cast<double>(brightest) / settings.threshold_lux));
+    return std::max(light.range_m.value_or(std::sqrt(static_cast<double>(brightest) / settings.threshold_lux)), 1e-4);
+}
+
+gpu::GpuLight make_gpu_light(const Light& light, const glm::dvec3& origin_m, const LightSettings& settings) {
     gpu::GpuLight out{};
-    out.position_range = glm::vec4(glm::vec3(light.position - origin_m), static_cast<float>(std::max(range_m, 1e-4)));
+    out.position_range =
+        glm::vec4(glm::vec3(light.position - origin_m), static_cast<float>(light_range_m(light, settings)));
     const bool spot = light.type == LightType::spot;
     out.intensity_type = glm::vec4(light.intensity, spot ? 1.0F : 0.0F);
     out.direction_radius = glm::vec4(glm::vec3(light.direction), static_cast<float>(settings.source_radius_m));

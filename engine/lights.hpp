@@ -36,7 +36,10 @@ struct LightRoles {
 };
 [[nodiscard]] LightRoles assign_lights(const Scene& scene);
 
-/// `light` is a point or spot light.
+/// Where a point or spot light ends, m.
+[[nodiscard]] double light_range_m(const Light& light, const LightSettings& settings);
+
+/// `light` is a point or spot light. Without a shadow.
 [[nodiscard]] gpu::GpuLight make_gpu_light(const Light& light, const glm::dvec3& origin_m,
                                            const LightSettings& settings);
 

@@ -36,7 +36,7 @@ std::vector<std::string> Renderer::injection_points() {
 
 Renderer::Renderer(const Device& device, Scene scene, RendererSettings settings)
     : device_(&device), scene_(std::move(scene)), settings_(settings), lights_(assign_lights(scene_)),
-      casters_(caster_bounds(scene_)) {}
+      casters_(shadow_casters(scene_)) {}
 
 Renderer::~Renderer() = default;
 
@@ -105,8 +105,9 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
                          .local_light_count = light_count,
                          .air = request.air};
     frame_data_.write_parameters(request.frame_slot, make_frame_parameters(frame_.view, lights_, look));
+    plan_local_shadows();
     frame_data_.write_places(request.frame_slot, frame_.view.origin_m, scene_.instances, lights_.local,
-                             settings_.lights);
+                             settings_.lights, frame_.local_shadows.lights);
     const FrameData::Slot& slot = frame_data_.slot(request.frame_slot);
     frame_.parameters = import(graph, "frame parameters", slot.parameters);
     frame_.instances = import(graph, "instances", slot.instances);
@@ -119,7 +120,7 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
     if (lights_.sun) {
         sun = {.direction = glm::vec3(lights_.sun->direction),
                .illuminance_lux = lights_.sun->illuminance_lux,
-               .casts_shadows = !casters_.empty()};
+               .casts_shadows = !casters_.bounds.empty()};
     }
     blackboard.put(sun);
     SceneLights lights{.lights = {}, .records = slot.light_records};
@@ -146,6 +147,7 @@ tl::expected<void, Error> Renderer::declare(rg::GraphBuilder& graph, rg::Blackbo
     };
     points.visit("frame_begin", graph, blackboard, run(&Renderer::declare_particles));
     run (&Renderer::declare_shadows)(graph, blackboard);
+    run (&Renderer::declare_local_shadows)(graph, blackboard);
     points.visit("after_shadow_maps", graph, blackboard);
     run (&Renderer::declare_depth)(graph, blackboard);
     points.visit("after_depth", graph, blackboard);
@@ -165,10 +167,13 @@ tl::expected<void, Error> Renderer::declare(rg::GraphBuilder& graph, rg::Blackbo
 }
 
 void Renderer::forget_cached_frames() {
-    if (cascade_cache_) {
-        cascade_cache_->has_layout = false;
-        cascade_cache_->held = {};
+    for (std::optional<ShadowCache>* cache : {&cascade_cache_, &local_shadow_cache_}) {
+        if (*cache) {
+            (*cache)->has_layout = false;
+        }
     }
+    cascades_held_ = {};
+    std::fill(local_maps_held_.begin(), local_maps_held_.end(), std::nullopt);
 }
 
 } // namespace tyndall::engine

@@ -25,6 +25,7 @@
 #include "engine/draw.hpp"
 #include "engine/frame.hpp"
 #include "engine/frame_data.hpp"
+#include "engine/local_shadows.hpp"
 #include "engine/particles.hpp"
 #include "engine/renderer_pipelines.hpp"
 #include "engine/renderer_settings.hpp"
@@ -90,17 +91,30 @@ public:
     [[nodiscard]] const LightRoles& lights() const { return lights_; }
 
 private:
-    /// The images of the cascades when they are kept, and what each layer holds.
-    struct CascadeCache {
+    /// An array of shadow maps that is kept.
+    struct ShadowCache {
         DeviceImage image;
+        std::uint32_t layers = 0;
         bool has_layout = false; ///< some frame has left it in its resting layout
-        std::array<std::optional<CascadesFit>, most_cascades> held;
+    };
+    /// What a local light's shadow map shows. Lights and casters never move.
+    struct HeldMap {
+        std::uint32_t light = 0; ///< index into LightRoles::local
+        std::uint32_t side = 0;
+        friend bool operator==(const HeldMap&, const HeldMap&) = default;
+    };
+    /// One map of a frame.
+    struct LocalMap {
+        std::uint32_t record = 0; ///< of Frame::local_shadows, and of the array of gpu::LocalShadow
+        std::uint32_t side = 0;   ///< of the light's cube
+        std::uint32_t layer = 0;
     };
     /// Handles and lists of the frame that is being declared.
     struct Frame {
         FrameView view;
         DrawLists lists;
         std::optional<CascadesFit> cascades;
+        LocalShadowPlan local_shadows;
         GeometryImports geometry;
         rg::Buffer parameters;
         rg::Buffer instances;
@@ -119,8 +133,17 @@ private:
 
     // renderer_shadows.cpp
     [[nodiscard]] tl::expected<void, Error> declare_shadows(rg::GraphBuilder& graph, rg::Blackboard& blackboard);
-    [[nodiscard]] rg::Image cascade_image(rg::GraphBuilder& graph, bool drawn);
+    [[nodiscard]] tl::expected<ShadowCache, Error> make_shadow_cache(std::uint32_t side, std::uint32_t layers) const;
+    [[nodiscard]] rg::Image shadow_image(rg::GraphBuilder& graph, const char* name, std::optional<ShadowCache>& cache,
+                                         std::uint32_t side, std::uint32_t layers, bool drawn);
     [[nodiscard]] bool is_held(std::uint32_t cascade) const;
+
+    // renderer_local_shadows.cpp
+    void plan_local_shadows();
+    [[nodiscard]] tl::expected<void, Error> declare_local_shadows(rg::GraphBuilder& graph, rg::Blackboard& blackboard);
+    [[nodiscard]] std::vector<LocalMap> stale_maps(); ///< that are to be drawn, which are held from then on
+    [[nodiscard]] tl::expected<void, Error> declare_local_map(rg::GraphBuilder& graph, rg::Image& maps,
+                                                              rg::Buffer records, const LocalMap& map);
 
     // renderer_surfaces.cpp
     [[nodiscard]] tl::expected<std::vector<Draw>, Error> depth_draws(DepthTarget target,
@@ -141,14 +164,18 @@ private:
     Scene scene_;
     RendererSettings settings_;
     LightRoles lights_;
-    Box casters_;
+    Casters casters_;
     SceneGpu scene_gpu_;
     std::optional<RendererPipelines> pipelines_;
     FrameData frame_data_;
     DeviceSampler shadow_sampler_;  ///< compares, nearest
     DeviceSampler linear_sampler_;  ///< clamps
     DeviceSampler nearest_sampler_; ///< clamps
-    std::optional<CascadeCache> cascade_cache_;
+    std::optional<ShadowCache> cascade_cache_;
+    std::array<std::optional<CascadesFit>, most_cascades> cascades_held_; ///< by layer of the cache
+    std::optional<ShadowCache> local_shadow_cache_;
+    std::vector<std::optional<HeldMap>> local_maps_held_; ///< by layer of the cache
+    std::vector<ShadowedLight> shadowed_lights_;          ///< of the frame declared last
     ParticleSystem* particles_ = nullptr;
 
     Frame frame_;

@@ -5,36 +5,50 @@
 
 #include "engine/geometry_gpu.hpp"
 #include "engine/materials_gpu.hpp"
+#include "spirv/depth_local_m0.h"
+#include "spirv/depth_local_m1.h"
 #include "spirv/depth_mask_fragment.h"
 #include "spirv/depth_shadow_m0.h"
 #include "spirv/depth_shadow_m1.h"
 #include "spirv/depth_view_m0.h"
 #include "spirv/depth_view_m1.h"
 #include "spirv/exposure_compute.h"
-#include "spirv/forward_s0_l0.h"
-#include "spirv/forward_s0_l1.h"
-#include "spirv/forward_s0_l2.h"
-#include "spirv/forward_s1_l0.h"
-#include "spirv/forward_s1_l1.h"
-#include "spirv/forward_s1_l2.h"
+#include "spirv/forward_s0_l00.h"
+#include "spirv/forward_s0_l10.h"
+#include "spirv/forward_s0_l11.h"
+#include "spirv/forward_s0_l20.h"
+#include "spirv/forward_s0_l21.h"
+#include "spirv/forward_s1_l00.h"
+#include "spirv/forward_s1_l10.h"
+#include "spirv/forward_s1_l11.h"
+#include "spirv/forward_s1_l20.h"
+#include "spirv/forward_s1_l21.h"
 #include "spirv/forward_vertex.h"
 #include "spirv/full_screen_far_vertex.h"
 #include "spirv/luminance_compute.h"
 #include "spirv/sky_fragment.h"
 #include "spirv/tone_mapping_a0.h"
 #include "spirv/tone_mapping_a1.h"
-#include "spirv/transparent_fog_s0_l0.h"
-#include "spirv/transparent_fog_s0_l1.h"
-#include "spirv/transparent_fog_s0_l2.h"
-#include "spirv/transparent_fog_s1_l0.h"
-#include "spirv/transparent_fog_s1_l1.h"
-#include "spirv/transparent_fog_s1_l2.h"
-#include "spirv/transparent_s0_l0.h"
-#include "spirv/transparent_s0_l1.h"
-#include "spirv/transparent_s0_l2.h"
-#include "spirv/transparent_s1_l0.h"
-#include "spirv/transparent_s1_l1.h"
-#include "spirv/transparent_s1_l2.h"
+#include "spirv/transparent_fog_s0_l00.h"
+#include "spirv/transparent_fog_s0_l10.h"
+#include "spirv/transparent_fog_s0_l11.h"
+#include "spirv/transparent_fog_s0_l20.h"
+#include "spirv/transparent_fog_s0_l21.h"
+#include "spirv/transparent_fog_s1_l00.h"
+#include "spirv/transparent_fog_s1_l10.h"
+#include "spirv/transparent_fog_s1_l11.h"
+#include "spirv/transparent_fog_s1_l20.h"
+#include "spirv/transparent_fog_s1_l21.h"
+#include "spirv/transparent_s0_l00.h"
+#include "spirv/transparent_s0_l10.h"
+#include "spirv/transparent_s0_l11.h"
+#include "spirv/transparent_s0_l20.h"
+#include "spirv/transparent_s0_l21.h"
+#include "spirv/transparent_s1_l00.h"
+#include "spirv/transparent_s1_l10.h"
+#include "spirv/transparent_s1_l11.h"
+#include "spirv/transparent_s1_l20.h"
+#include "spirv/transparent_s1_l21.h"
 
 namespace tyndall::engine {
 namespace {
@@ -42,15 +56,20 @@ namespace {
 using Spirv = std::span<const std::uint32_t>;
 
 Spirv forward_spirv(const ForwardVariant& variant) {
-    const std::array<std::array<std::array<Spirv, 3>, 2>, 3> shaders = {{
-        {{{forward_s0_l0, forward_s0_l1, forward_s0_l2}, {forward_s1_l0, forward_s1_l1, forward_s1_l2}}},
-        {{{transparent_s0_l0, transparent_s0_l1, transparent_s0_l2},
-          {transparent_s1_l0, transparent_s1_l1, transparent_s1_l2}}},
-        {{{transparent_fog_s0_l0, transparent_fog_s0_l1, transparent_fog_s0_l2},
-          {transparent_fog_s1_l0, transparent_fog_s1_l1, transparent_fog_s1_l2}}},
+    // By kind of local lights: without shadows as LocalLights counts them, then the last two with shadows.
+    const std::array<std::array<std::array<Spirv, 5>, 2>, 3> shaders = {{
+        {{{forward_s0_l00, forward_s0_l10, forward_s0_l20, forward_s0_l11, forward_s0_l21},
+          {forward_s1_l00, forward_s1_l10, forward_s1_l20, forward_s1_l11, forward_s1_l21}}},
+        {{{transparent_s0_l00, transparent_s0_l10, transparent_s0_l20, transparent_s0_l11, transparent_s0_l21},
+          {transparent_s1_l00, transparent_s1_l10, transparent_s1_l20, transparent_s1_l11, transparent_s1_l21}}},
+        {{{transparent_fog_s0_l00, transparent_fog_s0_l10, transparent_fog_s0_l20, transparent_fog_s0_l11,
+           transparent_fog_s0_l21},
+          {transparent_fog_s1_l00, transparent_fog_s1_l10, transparent_fog_s1_l20, transparent_fog_s1_l11,
+           transparent_fog_s1_l21}}},
     }};
     const std::size_t surface = !variant.transparent ? 0 : variant.scattering ? 2 : 1;
-    return shaders[surface][variant.sun_shadow ? 1 : 0][static_cast<std::size_t>(variant.lights)];
+    const std::size_t kind = static_cast<std::size_t>(variant.lights) + (variant.local_shadow ? 2 : 0);
+    return shaders[surface][variant.sun_shadow ? 1 : 0][kind];
 }
 
 constexpr VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
@@ -85,6 +104,10 @@ Bindings forward_bindings(const ForwardVariant& variant) {
         add(bindings, 7, uniform, fragment);
         add(bindings, 8, sampled, fragment);
     }
+    if (variant.local_shadow) {
+        add(bindings, 9, sampled, fragment);
+        add(bindings, 10, storage, fragment);
+    }
     return bindings;
 }
 
@@ -111,11 +134,12 @@ tl::expected<VkPipelineLayout, Error> RendererPipelines::layout(const LayoutKey&
     switch (key.kind) {
     case Kind::depth_view:
     case Kind::depth_cascade:
-        add(bindings, 0, uniform, vertex);
+    case Kind::depth_local:
+        add(bindings, 0, key.kind == Kind::depth_local ? storage : uniform, vertex);
         add(bindings, 1, storage, vertex);
         has_materials = true;
-        if (key.kind == Kind::depth_cascade) {
-            push_bytes = sizeof(std::uint32_t);
+        if (key.kind != Kind::depth_view) {
+            push_bytes = (key.kind == Kind::depth_local ? 2 : 1) * sizeof(std::uint32_t);
             push_stages = vertex;
         }
         break;
@@ -179,25 +203,31 @@ tl::expected<Program, Error> RendererPipelines::find_or_make(const PipelineKey& 
 }
 
 tl::expected<Program, Error> RendererPipelines::depth(DepthTarget target, bool mask, std::uint32_t features) {
-    const bool cascade = target == DepthTarget::cascade;
+    struct Of {
+        Kind kind;
+        Spirv plain;
+        Spirv masked;
+    };
+    const std::array<Of, 3> targets = {{{Kind::depth_view, depth_view_m0, depth_view_m1},
+                                        {Kind::depth_cascade, depth_shadow_m0, depth_shadow_m1},
+                                        {Kind::depth_local, depth_local_m0, depth_local_m1}}};
+    const Of& of = targets[static_cast<std::size_t>(target)];
     const std::uint32_t used = mask ? features & mask_features : 0U;
-    const LayoutKey layout_key{cascade ? Kind::depth_cascade : Kind::depth_view, {}};
-    return find_or_make({layout_key, mask, used}, [&](VkPipelineLayout pipeline_layout) {
-        const Spirv plain = cascade ? Spirv(depth_shadow_m0) : Spirv(depth_view_m0);
-        const Spirv masked = cascade ? Spirv(depth_shadow_m1) : Spirv(depth_view_m1);
+    return find_or_make({{of.kind, {}}, mask, used}, [&](VkPipelineLayout pipeline_layout) {
         const SpecializationConstant constant{0, used};
-        return create_graphics_pipeline(*device_, cache_,
-                                        {.layout = pipeline_layout,
-                                         .vertex_spirv = mask ? masked : plain,
-                                         .fragment_spirv = mask ? Spirv(depth_mask_fragment) : Spirv(),
-                                         .constants = {&constant, 1},
-                                         .vertex_bindings = vertex_bindings(mask),
-                                         .vertex_attributes = vertex_attributes(mask),
-                                         .depth_format = depth_format,
-                                         .depth_test = true,
-                                         .depth_write = true,
-                                         .depth_compare = cascade ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER,
-                                         .dynamic_culling = true});
+        return create_graphics_pipeline(
+            *device_, cache_,
+            {.layout = pipeline_layout,
+             .vertex_spirv = mask ? of.masked : of.plain,
+             .fragment_spirv = mask ? Spirv(depth_mask_fragment) : Spirv(),
+             .constants = {&constant, 1},
+             .vertex_bindings = vertex_bindings(mask),
+             .vertex_attributes = vertex_attributes(mask),
+             .depth_format = depth_format,
+             .depth_test = true,
+             .depth_write = true,
+             .depth_compare = target == DepthTarget::cascade ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER,
+             .dynamic_culling = true});
     });
 }
 

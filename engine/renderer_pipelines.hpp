@@ -20,6 +20,7 @@ enum class LocalLights : std::uint8_t { none, all, of_cluster };
 struct ForwardVariant {
     bool sun_shadow = false;
     LocalLights lights = LocalLights::none;
+    bool local_shadow = false; ///< some of the lights, so there are some, cast shadows
     bool transparent = false;
     bool scattering = false; ///< with `transparent` only
     bool air = false;        ///< weakens light on its way
@@ -28,7 +29,7 @@ struct ForwardVariant {
 };
 
 /// Where depth alone is drawn.
-enum class DepthTarget : std::uint8_t { view, cascade };
+enum class DepthTarget : std::uint8_t { view, cascade, local };
 
 /// A pipeline and the layout to bind for it.
 struct Program {
@@ -65,6 +66,7 @@ private:
     enum class Kind : std::uint8_t {
         depth_view,
         depth_cascade,
+        depth_local,
         forward,
         sky,
         luminance_sums,

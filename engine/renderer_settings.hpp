@@ -9,6 +9,7 @@
 
 #include "engine/cascades.hpp"
 #include "engine/lights.hpp"
+#include "engine/local_shadows.hpp"
 
 namespace tyndall::engine {
 
@@ -45,6 +46,7 @@ struct RendererSettings {
     CascadeSettings cascades;
     bool cache_cascades = true; ///< what a cascade holds is kept until sun, scene or its texels change
     LightSettings lights;
+    LocalShadowSettings local_shadows;    ///< their maps are kept until the light that a map serves changes
     std::optional<Ambient> ambient;       ///< absent: default_ambient
     std::optional<Background> background; ///< absent: default_background
     ExposureSettings exposure;

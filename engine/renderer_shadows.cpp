@@ -16,52 +16,61 @@ constexpr VkImageLayout resting_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY
 } // namespace
 
 bool Renderer::is_held(std::uint32_t cascade) const {
-    return cascade_cache_ && cascade_cache_->held[cascade] &&
-           same_texels(*cascade_cache_->held[cascade], *frame_.cascades, cascade);
+    return cascade_cache_ && cascades_held_[cascade] &&
+           same_texels(*cascades_held_[cascade], *frame_.cascades, cascade);
 }
 
-rg::Image Renderer::cascade_image(rg::GraphBuilder& graph, bool drawn) {
-    const std::uint32_t side = frame_.cascades->resolution;
-    const rg::ImageDesc desc{.format = depth_format, .extent = {side, side, 1}, .layers = frame_.cascades->count};
-    if (!cascade_cache_) {
-        return graph.create_image("sun cascades", desc);
+tl::expected<Renderer::ShadowCache, Error> Renderer::make_shadow_cache(std::uint32_t side, std::uint32_t layers) const {
+    auto image = DeviceImage::create(*device_,
+                                     {.format = depth_format,
+                                      .extent = {side, side, 1},
+                                      .layers = layers,
+                                      .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                      .shared_between_queues = true});
+    if (!image) {
+        return tl::unexpected(image.error());
     }
+    return ShadowCache{.image = std::move(*image), .layers = layers};
+}
+
+rg::Image Renderer::shadow_image(rg::GraphBuilder& graph, const char* name, std::optional<ShadowCache>& cache,
+                                 std::uint32_t side, std::uint32_t layers, bool drawn) {
+    rg::ImageDesc desc{.format = depth_format, .extent = {side, side, 1}, .layers = layers};
+    if (!cache) {
+        return graph.create_image(name, desc);
+    }
+    desc.layers = cache->layers;
     // No stages on the way in: the last use was in an earlier frame, after which the executor orders this one whole.
     rg::ImportDesc import{.read_only = !drawn};
-    import.initial_layout = cascade_cache_->has_layout ? resting_layout : VK_IMAGE_LAYOUT_UNDEFINED;
+    import.initial_layout = cache->has_layout ? resting_layout : VK_IMAGE_LAYOUT_UNDEFINED;
     if (drawn) {
         import.has_final = true;
         import.final_layout = resting_layout;
         import.final_stages = sampling_stages;
         import.final_access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
     }
-    cascade_cache_->has_layout = true;
-    const rg::Image image = graph.import_image("sun cascades", desc, import);
+    cache->has_layout = true;
+    const rg::Image image = graph.import_image(name, desc, import);
     graph.share_between_queues(image);
-    bindings_.push_back({.resource = image.resource, .image = cascade_cache_->image.handle()});
+    bindings_.push_back({.resource = image.resource, .image = cache->image.handle()});
     return image;
 }
 
 tl::expected<void, Error> Renderer::declare_shadows(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
-    if (!lights_.sun || casters_.empty()) {
+    if (!lights_.sun || casters_.bounds.empty()) {
         omit("sun cascades",
              lights_.sun ? "nothing in the scene casts a shadow" : "the scene has no directional light");
         return {};
     }
     const std::uint32_t side = settings_.cascades.resolution;
     if (settings_.cache_cascades && !cascade_cache_) {
-        auto image = DeviceImage::create(
-            *device_, {.format = depth_format,
-                       .extent = {side, side, 1},
-                       .layers = settings_.cascades.count,
-                       .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                       .shared_between_queues = true});
-        if (!image) {
-            return tl::unexpected(image.error());
+        auto cache = make_shadow_cache(side, settings_.cascades.count);
+        if (!cache) {
+            return tl::unexpected(cache.error());
         }
-        cascade_cache_ = CascadeCache{.image = std::move(*image)};
+        cascade_cache_ = std::move(*cache);
     }
-    frame_.cascades = fit_cascades(frame_.view, casters_, lights_.sun->direction, settings_.cascades);
+    frame_.cascades = fit_cascades(frame_.view, casters_.bounds, lights_.sun->direction, settings_.cascades);
     const std::uint32_t slot_index = frame_.view.frame_slot;
     const gpu::SunCascades values =
         make_sun_cascades(*frame_.cascades, frame_.view.origin_m, lights_.sun->illuminance_lux);
@@ -74,14 +83,16 @@ tl::expected<void, Error> Renderer::declare_shadows(rg::GraphBuilder& graph, rg:
         stale[i] = !is_held(i);
         any_stale = any_stale || stale[i];
     }
-    rg::Image image = cascade_image(graph, any_stale);
+    rg::Image image = shadow_image(graph, "sun cascades", cascade_cache_, side, frame_.cascades->count, any_stale);
     for (std::uint32_t i = 0; i < frame_.cascades->count; ++i) {
         const std::string name = "sun cascade " + std::to_string(i);
         if (!stale[i]) {
             omit(name, "it holds the same as in an earlier frame");
             continue;
         }
-        auto draws = depth_draws(DepthTarget::cascade, shadow_casters(scene_, *frame_.cascades, i));
+        auto draws =
+            depth_draws(DepthTarget::cascade,
+                        casters_.where([&](const Box& box) { return may_cast_into(*frame_.cascades, i, box); }));
         auto program = pipelines_->depth(DepthTarget::cascade, false, 0);
         if (!draws || !program) {
             return tl::unexpected(draws ? program.error() : draws.error());
@@ -103,7 +114,7 @@ tl::expected<void, Error> Renderer::declare_shadows(rg::GraphBuilder& graph, rg:
             }
         });
         if (cascade_cache_) {
-            cascade_cache_->held[i] = *frame_.cascades;
+            cascades_held_[i] = *frame_.cascades;
         }
     }
     blackboard.put(SunShadow{image, parameters, values});

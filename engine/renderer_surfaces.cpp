@@ -33,7 +33,7 @@ tl::expected<std::vector<Draw>, Error> Renderer::depth_draws(DepthTarget target,
         if (!mask) {
             draw.material = VK_NULL_HANDLE;
         }
-        if (target == DepthTarget::cascade) {
+        if (target != DepthTarget::view) {
             draw.cull = VK_CULL_MODE_NONE; // walls are often modelled from one side only, and still stop light
         }
         draws.push_back(draw);
@@ -73,7 +73,8 @@ tl::expected<void, Error> Renderer::declare_opaque(rg::GraphBuilder& graph, rg::
                          .instances = frame_.instances,
                          .air = frame_.air,
                          .shadow_sampler = shadow_sampler_.get(),
-                         .linear_sampler = linear_sampler_.get()};
+                         .linear_sampler = linear_sampler_.get(),
+                         .nearest_sampler = nearest_sampler_.get()};
     inputs.find(blackboard, false);
     VkPipelineLayout layout = VK_NULL_HANDLE;
     std::vector<Draw> draws;

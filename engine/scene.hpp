@@ -166,6 +166,8 @@ struct Light {
     std::optional<double> range_m;        ///< influence ends there; absent: infinite
     float inner_cone_rad = 0.0F;          ///< spot: half angle within which it is brightest
     float outer_cone_rad = 0.785398163F;  ///< spot: half angle beyond which it is dark, above inner_cone_rad
+    std::optional<bool> casts_shadow;     ///< point and spot; absent: as the renderer's settings say
+    std::optional<double> shadow_near_m;  ///< what is nearer to the light casts none, > 0; absent: as they say
 };
 
 struct Scene {

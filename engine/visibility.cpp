@@ -53,24 +53,17 @@ DrawLists visible_instances(const Scene& scene, const FrameView& view) {
     return lists;
 }
 
-std::vector<std::uint32_t> shadow_casters(const Scene& scene, const CascadesFit& fit, std::uint32_t cascade) {
-    std::vector<std::uint32_t> casters;
+Casters shadow_casters(const Scene& scene) {
+    Casters casters;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-        if (casts_shadow(scene, scene.instances[i]) && may_cast_into(fit, cascade, scene.instances[i].box)) {
-            casters.push_back(i);
+        const Instance& instance = scene.instances[i];
+        if (casts_shadow(scene, instance)) {
+            casters.instances.push_back(i);
+            casters.boxes.push_back(instance.box);
+            casters.bounds.grow(instance.box);
         }
     }
     return casters;
-}
-
-Box caster_bounds(const Scene& scene) {
-    Box box;
-    for (const Instance& instance : scene.instances) {
-        if (casts_shadow(scene, instance)) {
-            box.grow(instance.box);
-        }
-    }
-    return box;
 }
 
 } // namespace tyndall::engine

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/camera.hpp"
-#include "engine/cascades.hpp"
 #include "engine/scene.hpp"
 
 namespace tyndall::engine {
@@ -21,11 +20,24 @@ struct DrawLists {
 };
 [[nodiscard]] DrawLists visible_instances(const Scene& scene, const FrameView& view);
 
-/// Instances, opaque and mask, that may throw a shadow into the cascade, in the scene's order.
-[[nodiscard]] std::vector<std::uint32_t> shadow_casters(const Scene& scene, const CascadesFit& fit,
-                                                        std::uint32_t cascade);
+/// What casts shadows.
+struct Casters {
+    std::vector<std::uint32_t> instances; ///< opaque and mask, in the scene's order
+    std::vector<Box> boxes;               ///< theirs, in the same order
+    Box bounds;                           ///< of all; empty where there is none
 
-/// Of all instances that cast shadows; empty when none does.
-[[nodiscard]] Box caster_bounds(const Scene& scene);
+    /// The instances for whose box `wanted` holds.
+    template <typename Wanted>
+    [[nodiscard]] std::vector<std::uint32_t> where(Wanted&& wanted) const {
+        std::vector<std::uint32_t> found;
+        for (std::size_t i = 0; i < instances.size(); ++i) {
+            if (wanted(boxes[i])) {
+                found.push_back(instances[i]);
+            }
+        }
+        return found;
+    }
+};
+[[nodiscard]] Casters shadow_casters(const Scene& scene);
 
 } // namespace tyndall::engine

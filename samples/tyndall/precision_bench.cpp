@@ -18,6 +18,7 @@ Expected<PictureRun> PictureRun::create(const engine::Device& device, const Prec
     FrameLoopInfo info;
     info.renderer = renderer_settings(scene);
     info.renderer.cascades.resolution = configuration.cascade_texels;
+    info.renderer.local_shadows.resolution = configuration.cascade_texels;
     info.fog = configured_fog(scene, configuration);
     info.profile = true;
     if (const auto valid = volumetrics::validate(info.fog->settings); !valid) {

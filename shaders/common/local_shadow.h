@@ -16,7 +16,8 @@ struct LocalShadow {
     vec4 row_y; // the axes of render space for a point light
     vec4 row_z;
     vec4 lens;  // x: uv - 0.5 of a point with x / z = 1; y: near distance, m, within which nothing casts a shadow; z: its
-                // first layer; w: 1 for a cube of six layers, in the order +x -x +y -y +z -z, 0 for one layer
+                // first layer; w: 1 for a cube of six layers, in the order +x -x +y -y +z -z, 0 for one layer. u and v of
+                // a side grow with the axes that follow its own: y and z, z and x, x and y
     vec4 texel; // x: width of a texel at a distance of 1 m, m; y: texels of a side; z: 1 / y; w 0
 };
 

@@ -1,6 +1,7 @@
 // Lit surfaces. Bindings differ between the variants:
 //   SUN_SHADOW   1: the sun shines through its cascades
 //   LIGHTS       0: none, 1: all of them, 2: those of the point's cluster
+//   LOCAL_SHADOW 1: (with LIGHTS) those that cast shadows do
 //   TRANSPARENT  1: premultiplied by alpha
 //   SCATTERING   1: (with TRANSPARENT) fogged at the fragment's own depth
 #version 460
@@ -23,6 +24,11 @@ layout(set = 0, binding = 4, std430) readonly restrict buffer Lights { GpuLight 
 // 1 to 32: the number of lights, each of which has code of its own; 0: a loop. Unrolled code pays on a processor that
 // jumps over what none of its eight pixels needs: there a load from a constant place serves all eight at once.
 layout(constant_id = 1) const uint unrolled_lights = 0u;
+#endif
+#if LOCAL_SHADOW
+#include "common/local_shadow.glsl"
+layout(set = 0, binding = 9) uniform sampler2DArray local_shadow_maps; // depth, nearest, clamps
+layout(set = 0, binding = 10, std430) readonly restrict buffer LocalShadows { LocalShadow local_shadows[]; };
 #endif
 #if LIGHTS == 2
 #include "common/light_clusters.glsl"
@@ -103,7 +109,8 @@ vec3 ambient_radiance(vec3 direction) {
 }
 
 #if LIGHTS
-vec3 local_light(GpuLight light, Reflection r, vec3 normal, vec3 to_eye) {
+// `geometric`: normal without its map.
+vec3 local_light(GpuLight light, Reflection r, vec3 normal, vec3 geometric, vec3 to_eye) {
     if (unrolled_lights > 0u) { // what is out of reach adds exactly 0 below as well
         vec3 d = light.position_range.xyz - surface_position;
         if (dot(d, d) >= light.position_range.w * light.position_range.w || dot(d, normal) <= 0.0) {
@@ -115,11 +122,21 @@ vec3 local_light(GpuLight light, Reflection r, vec3 normal, vec3 to_eye) {
     if (air_weakens_light) {
         irradiance *= air_transmittance(frame.air, surface_position, light.position_range.xyz - surface_position);
     }
+#if LOCAL_SHADOW
+    if (casts_local_shadow(light.cone)) {
+        float facing = dot(geometric, to_light);
+        if (facing <= 0.0 || irradiance == vec3(0.0)) {
+            return vec3(0.0);
+        }
+        irradiance *= local_surface_visibility(local_shadows[local_shadow_index(light.cone)], local_shadow_maps,
+                                               surface_position, geometric);
+    }
+#endif
     return irradiance * reflect_light(r, to_eye, to_light, max(dot(normal, to_light), 0.0));
 }
 
 // In index order in every variant, so that all give the same bits.
-vec3 local_lights(Reflection r, vec3 normal, vec3 to_eye, vec2 uv, float depth_m) {
+vec3 local_lights(Reflection r, vec3 normal, vec3 geometric, vec3 to_eye, vec2 uv, float depth_m) {
     vec3 sum = vec3(0.0);
 #if LIGHTS == 2
     uint first = cluster_index(clusters, uv, depth_m) * clusters.block.w;
@@ -132,7 +149,7 @@ vec3 local_lights(Reflection r, vec3 normal, vec3 to_eye, vec2 uv, float depth_m
 #endif
         [[unroll]] for (uint i = 0u; i < unrolled_lights; ++i) {
             if ((mask & (1u << i)) != 0u) {
-                sum += local_light(lights[i], r, normal, to_eye);
+                sum += local_light(lights[i], r, normal, geometric, to_eye);
             }
         }
         return sum;
@@ -140,13 +157,13 @@ vec3 local_lights(Reflection r, vec3 normal, vec3 to_eye, vec2 uv, float depth_m
 #if LIGHTS == 2
     for (uint word = 0u; word < clusters.block.w; ++word) {
         for (uint mask = masks[first + word]; mask != 0u; mask &= mask - 1u) {
-            sum += local_light(lights[32u * word + uint(findLSB(mask))], r, normal, to_eye);
+            sum += local_light(lights[32u * word + uint(findLSB(mask))], r, normal, geometric, to_eye);
         }
     }
 #else
     uint count = uint(frame.ambient_down.w);
     for (uint i = 0u; i < count; ++i) {
-        sum += local_light(lights[i], r, normal, to_eye);
+        sum += local_light(lights[i], r, normal, geometric, to_eye);
     }
 #endif
     return sum;
@@ -202,7 +219,7 @@ vec3 lit_radiance(vec3 base, float depth_m) {
             directional_light(r, normal, to_eye, frame.fill_direction[i].xyz, frame.fill_illuminance[i].rgb);
     }
 #if LIGHTS
-    radiance += local_lights(r, normal, to_eye, gl_FragCoord.xy * frame.size.zw, depth_m);
+    radiance += local_lights(r, normal, geometric, to_eye, gl_FragCoord.xy * frame.size.zw, depth_m);
 #endif
     vec3 emission = material.emission_cutoff.rgb;
     if (has_texture(emission_slot)) {

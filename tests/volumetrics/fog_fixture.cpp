@@ -204,6 +204,20 @@ FogTest::ReadBack FogTest::declare_view(rg::GraphBuilder& graph, std::vector<rg:
         upload(graph, named("upload cascades"), import_written("cascade data", data), shadow.cascades);
         shadow.parameters = import_written("cascade parameters", parameters);
     }
+    if (!scene.local_depths.empty()) {
+        const HostBuffer data =
+            host_buffer(scene.local_depths.size() * sizeof(float), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+        std::memcpy(data.mapped, scene.local_depths.data(), scene.local_depths.size() * sizeof(float));
+        const HostBuffer records =
+            host_buffer(scene.local_shadows.size() * sizeof(gpu::LocalShadow), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        std::memcpy(records.mapped, scene.local_shadows.data(), scene.local_shadows.size() * sizeof(gpu::LocalShadow));
+        const std::uint32_t size = scene.local_shadow_size;
+        const std::size_t layers = scene.local_depths.size() / (std::size_t{size} * size);
+        shadow.local_maps =
+            graph.create_image(named("local shadow maps"), depth_image(size, size, static_cast<std::uint32_t>(layers)));
+        upload(graph, named("upload local shadow maps"), import_written("local shadow data", data), shadow.local_maps);
+        shadow.local_records = import_written("local shadow records", records);
+    }
 
     // The feature, as a host drives it.
     const auto check = [](const tl::expected<void, Error>& result) { EXPECT_TRUE(result) << result.error().message; };

@@ -13,6 +13,7 @@
 #include "features/volumetrics/feature.hpp"
 #include "features/volumetrics/parameters.hpp"
 #include "shaders/common/lights.h"
+#include "shaders/common/local_shadow.h"
 #include "shaders/common/sun_shadow.h"
 #include "tests/gpu/gpu_fixture.hpp"
 
@@ -33,6 +34,9 @@ struct Scene {
     std::uint32_t cascade_size = 64;
     std::vector<float> cascade_depths; ///< 4 layers of cascade_size^2; empty: no cascades are given
     gpu::SunCascades cascades{};
+    std::uint32_t local_shadow_size = 0; ///< texels of a side of each local light's shadow map
+    std::vector<float> local_depths;     ///< layer after layer; empty: none are given
+    std::vector<gpu::LocalShadow> local_shadows;
     std::optional<glm::vec4> poison; ///< every froxel of the history that this frame leaves is set to it
 };
 
