@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "features/volumetrics/dispatch.hpp"
 #include "features/volumetrics/feature_state.hpp"
 #include "shaders/common/lights.h"
 
@@ -13,22 +14,6 @@ using rg::Access;
 using rg::Binding;
 using rg::PassContext;
 using rg::PassKind;
-
-/// A pipeline and the number of groups that cover its domain.
-struct Dispatch {
-    Program program;
-    std::array<std::uint32_t, 3> groups{1, 1, 1};
-};
-
-Dispatch covering(const Program& program, const GroupShape& group, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    return {program, {(x + group[0] - 1) / group[0], (y + group[1] - 1) / group[1], (z + group[2] - 1) / group[2]}};
-}
-
-void run(PassContext& ctx, const Dispatch& dispatch, std::span<const Binding> bindings) {
-    ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.program.pipeline);
-    ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.program.layout, 0, bindings);
-    ctx.vk().CmdDispatch(ctx.cmd(), dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
-}
 
 VkFormat volume_format(const Settings& settings) {
     return settings.storage == StorageFormat::fp16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -75,11 +60,21 @@ void Feature::State::declare_density(rg::GraphBuilder& graph) {
         pass.writes(emitted, Access::storage_compute);
         frame->stages.emission = emitted;
     }
-    pass.executes([=, parameters = frame->parameter_buffer](PassContext& ctx) {
-        std::array<Binding, 3> bindings{ctx.uniform(0, parameters), ctx.storage(1, density)};
+    const std::array<rg::Image, 2> noise = frame->noise;
+    for (const rg::Image& image : noise) {
+        if (image.valid()) {
+            pass.reads(image, Access::sampled_compute);
+        }
+    }
+    pass.executes([=, parameters = frame->parameter_buffer, repeating = shared.repeating](PassContext& ctx) {
+        std::array<Binding, 5> bindings{ctx.uniform(0, parameters), ctx.storage(1, density)};
         std::size_t count = 2;
         if (emitted.valid()) {
             bindings[count++] = ctx.storage(2, emitted);
+        }
+        if (noise[0].valid()) {
+            bindings[count++] = ctx.sampled(3, noise[0], repeating);
+            bindings[count++] = ctx.sampled(4, noise[1], repeating);
         }
         run(ctx, dispatch, std::span(bindings).first(count));
     });

@@ -12,14 +12,15 @@
 namespace tyndall::volumetrics {
 namespace {
 
-tl::expected<VkSampler, Error> make_sampler(const rg::DeviceTable& vk, VkDevice device, VkFilter filter) {
+tl::expected<VkSampler, Error> make_sampler(const rg::DeviceTable& vk, VkDevice device, VkFilter filter,
+                                            VkSamplerAddressMode address) {
     const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .magFilter = filter,
                                    .minFilter = filter,
                                    .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
-                                   .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                   .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                   .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+                                   .addressModeU = address,
+                                   .addressModeV = address,
+                                   .addressModeW = address};
     VkSampler sampler = VK_NULL_HANDLE;
     if (vk.CreateSampler(device, &info, nullptr, &sampler) != VK_SUCCESS) {
         return tl::unexpected(Error{"The device refused a sampler for the volumetrics."});
@@ -94,6 +95,7 @@ GroupShape row_group(std::uint32_t width, std::uint32_t longest) {
 Feature::Shared::~Shared() {
     info.vk->DestroySampler(info.device, linear, nullptr);
     info.vk->DestroySampler(info.device, nearest, nullptr);
+    info.vk->DestroySampler(info.device, repeating, nullptr);
 }
 
 rg::QueueWish Feature::State::wish() const {
@@ -104,15 +106,20 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
     const GridSettings& grid = frame->inputs.settings.grid;
     const Medium& medium = frame->inputs.medium;
     const glm::vec3 none(0.0F);
-    const std::array<std::uint32_t, 6> media{
+    const bool baked = is_baked(medium.noise);
+    if (auto made = baked ? shared.make_noise() : tl::expected<void, Error>(); !made) {
+        return made;
+    }
+    const std::array<std::uint32_t, 7> media{
         medium.homogeneous.extinction_per_m > 0.0F || medium.homogeneous.emission_per_m != none,
         medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none,
-        medium.noise.amplitude > 0.0F ? medium.noise.octaves : 0,
+        medium.noise.amplitude > 0.0F && !baked ? medium.noise.octaves : 0,
         is_perspective(frame->inputs.camera),
         frame->parameters.frame.z > 0,
-        frame->depth_curve};
-    auto density = pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission),
-                                     row_group(grid.width), media);
+        frame->depth_curve,
+        baked};
+    auto density = pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission, baked),
+                                     row_group(grid.width), std::span(media).first(baked ? 7 : 6));
     if (!density) {
         return tl::unexpected(density.error());
     }
@@ -138,12 +145,16 @@ tl::expected<Feature, Error> Feature::create(const FeatureInfo& info) {
             Error{"FeatureInfo must name a device, its function table and at least one frame in flight."});
     }
     auto shared = std::make_unique<Shared>(info);
-    for (const bool is_linear : {true, false}) {
-        auto sampler = make_sampler(*info.vk, info.device, is_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
-        if (!sampler) {
-            return tl::unexpected(sampler.error());
+    const auto make = [&](VkSampler& place, VkFilter filter,
+                          VkSamplerAddressMode address) -> tl::expected<void, Error> {
+        return make_sampler(*info.vk, info.device, filter, address).map([&](VkSampler made) { place = made; });
+    };
+    for (const auto& made : {make(shared->linear, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE),
+                             make(shared->nearest, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE),
+                             make(shared->repeating, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT)}) {
+        if (!made) {
+            return tl::unexpected(made.error());
         }
-        (is_linear ? shared->linear : shared->nearest) = *sampler;
     }
     return Feature(std::move(shared));
 }
@@ -251,6 +262,9 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     if (!frame.emission) {
         state.omit("fog emission", "no medium emits");
     }
+    if (is_baked(frame.inputs.medium.noise)) {
+        state.declare_noise(graph);
+    }
     state.declare_density(graph);
     if (is_clustered(frame.lights)) {
         state.declare_clustering(graph);
@@ -336,6 +350,16 @@ std::span<const rg::ImportBinding> Feature::bindings(std::uint32_t view) const {
     return found != nullptr ? std::span<const rg::ImportBinding>(found->import_bindings)
                             : std::span<const rg::ImportBinding>();
 }
+std::vector<VkImage> Feature::own_images() const {
+    std::vector<VkImage> images;
+    for (const auto& image : shared_->noise) {
+        if (image) {
+            images.push_back(image->handle());
+        }
+    }
+    return images;
+}
+
 std::span<const Omission> Feature::omissions(std::uint32_t view) const {
     const State* const found = find_view(view);
     return found != nullptr ? std::span<const Omission>(found->omissions) : std::span<const Omission>();

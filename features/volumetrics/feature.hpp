@@ -10,6 +10,7 @@
 // by itself, with its own history; the order of views does not matter.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -73,7 +74,9 @@ struct VolumeResources {
 struct StageResources {
     rg::Image density;  ///< 3D: scattering coefficient and extinction, 1/m times VolumetricParameters::density_scale.x
     rg::Image emission; ///< 3D: radiance gained per metre, cd/m^3 times VolumetricParameters::emission_scale.x
-    rg::Image esm;      ///< 2D array: ln of the mean of e^(k z), blurred
+    /// Two fp16 of a word, x fastest, then y, then z: shape and detail, in the frame that bakes them.
+    std::array<rg::Buffer, 2> baked_noise;
+    rg::Image esm; ///< 2D array: ln of the mean of e^(k z), blurred
     rg::Image
         error_estimate; ///< 2D, rgba32f, a column of froxels each: absolute error of the stored radiance at the range
 };
@@ -91,7 +94,9 @@ public:
     [[nodiscard]] static tl::expected<Feature, Error> create(const FeatureInfo& info);
     Feature(Feature&&) noexcept;
     Feature& operator=(Feature&&) noexcept;
-    ~Feature(); ///< the host has waited for the frames in flight
+    /// The host has waited for the frames in flight. An executor that goes on is told of each of `own_images` first
+    /// (Executor::release_import).
+    ~Feature();
 
     /// Validates, makes the pipelines that the view's frame needs, writes its uniforms into `frame_slot`. After an
     /// error the view has no fog in this frame: the declare functions do nothing.
@@ -115,6 +120,9 @@ public:
     /// What the executor needs beside the host's own bindings, of each view of the frame.
     [[nodiscard]] std::span<const rg::ImportBinding> bindings(std::uint32_t view = 0) const;
     [[nodiscard]] std::span<const Omission> omissions(std::uint32_t view = 0) const;
+
+    /// Those that live as long as the feature.
+    [[nodiscard]] std::vector<VkImage> own_images() const;
 
 private:
     struct Shared;

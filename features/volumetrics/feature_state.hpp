@@ -1,9 +1,12 @@
 // What a Feature holds, shared by feature.cpp (life, frame set-up) and declare.cpp (passes).
 #pragma once
 
+#include <array>
+
 #include "features/volumetrics/feature.hpp"
 #include "features/volumetrics/host_buffers.hpp"
 #include "features/volumetrics/parameters.hpp"
+#include "features/volumetrics/persistent_image.hpp"
 #include "features/volumetrics/pipelines.hpp"
 
 namespace tyndall::volumetrics {
@@ -24,6 +27,7 @@ struct FrameState {
     Program light_clustering;
     Program fog_on_opaque;
 
+    std::array<rg::Image, 2> noise; ///< shape and detail, where the noise is made of them
     rg::Buffer parameter_buffer;
     rg::Buffer light_buffer;
     rg::Buffer compact_lights; ///< its first lights, for binding as uniforms
@@ -41,15 +45,21 @@ struct Feature::Shared {
     ~Shared();
 
     FeatureInfo info;
-    VkSampler linear = VK_NULL_HANDLE;  ///< clamps to the edge
-    VkSampler nearest = VK_NULL_HANDLE; ///< clamps to the edge
+    /// The noise volumes and what bakes them; nothing where they are there already.
+    [[nodiscard]] tl::expected<void, Error> make_noise();
+
+    VkSampler linear = VK_NULL_HANDLE;    ///< clamps to the edge
+    VkSampler nearest = VK_NULL_HANDLE;   ///< clamps to the edge
+    VkSampler repeating = VK_NULL_HANDLE; ///< linear
     Pipelines pipelines;
+    std::array<std::unique_ptr<PersistentImage>, 2> noise; ///< shape and detail; null until they are needed
+    std::array<Program, 2> noise_bake;
 };
 
 /// One view.
 struct Feature::State {
-    State(Shared& shared, std::uint32_t view_index, std::unique_ptr<HostBuffers> buffers)
-        : view(view_index), linear(shared.linear), nearest(shared.nearest), pipelines(shared.pipelines),
+    State(Shared& all, std::uint32_t view_index, std::unique_ptr<HostBuffers> buffers)
+        : view(view_index), shared(all), linear(all.linear), nearest(all.nearest), pipelines(all.pipelines),
           host_buffers(std::move(buffers)) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
@@ -59,6 +69,7 @@ struct Feature::State {
     void omit(std::string what, std::string why) { omissions.push_back({std::move(what), std::move(why)}); }
 
     // Passes, in order; declare.cpp.
+    void declare_noise(rg::GraphBuilder& graph); ///< declare_noise.cpp
     void declare_density(rg::GraphBuilder& graph);
     void declare_clustering(rg::GraphBuilder& graph);
     [[nodiscard]] tl::expected<void, Error> declare_esm(rg::GraphBuilder& graph, const ShadowResources& shadow);
@@ -73,6 +84,7 @@ struct Feature::State {
     }
 
     std::uint32_t view;
+    Shared& shared;
     VkSampler linear;
     VkSampler nearest;
     Pipelines& pipelines;

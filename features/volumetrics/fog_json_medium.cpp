@@ -52,6 +52,24 @@ void read_volume(Section& s, LocalVolume& volume) {
     }
 }
 
+void read_noise(Section& s, DensityNoise& noise) {
+    s.read("kind", noise.kind, {{"perlin", NoiseKind::perlin}, {"perlin_worley", NoiseKind::perlin_worley}});
+    s.read("amplitude", noise.amplitude);
+    s.read("scale_m", noise.scale_m);
+    s.read("wind_m_s", noise.wind_m_s);
+    if (noise.kind == NoiseKind::perlin) {
+        s.read("octaves", noise.octaves);
+        s.read("gain", noise.gain);
+        return;
+    }
+    s.read("coverage", noise.coverage);
+    s.read("detail", noise.detail);
+    noise.detail_scale_m = 0.25F * noise.scale_m;
+    s.read("detail_scale_m", noise.detail_scale_m);
+    noise.detail_wind_m_s = noise.wind_m_s;
+    s.read("detail_wind_m_s", noise.detail_wind_m_s);
+}
+
 } // namespace
 
 void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
@@ -68,13 +86,7 @@ void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
             s.read("base_height_m", medium.height.base_height_m);
             s.read("falloff_per_m", medium.height.falloff_per_m);
         });
-        subsection(section, "noise", error, [&](Section& s) {
-            s.read("amplitude", medium.noise.amplitude);
-            s.read("scale_m", medium.noise.scale_m);
-            s.read("wind_m_s", medium.noise.wind_m_s);
-            s.read("octaves", medium.noise.octaves);
-            s.read("gain", medium.noise.gain);
-        });
+        subsection(section, "noise", error, [&](Section& s) { read_noise(s, medium.noise); });
         elements(section, "volumes", LocalVolume::most, error,
                  [&](Section& s, std::uint32_t) { read_volume(s, medium.volumes.emplace_back()); });
     });

@@ -64,14 +64,6 @@ float largest(const glm::vec3& v) {
 
 } // namespace
 
-double octave_weights(const DensityNoise& noise) {
-    double sum = 0.0;
-    for (std::uint32_t i = noise.octaves; i > 0; --i) { // Horner's scheme
-        sum = 1.0 + static_cast<double>(noise.gain) * sum;
-    }
-    return sum;
-}
-
 PhaseLobes phase_of(const Medium& medium) {
     if (medium.phase_lobes.count > 0) {
         return medium.phase_lobes;
@@ -168,11 +160,7 @@ tl::expected<void, Error> validate(const Medium& medium) {
     check.in_range("medium.height.emission_per_m", medium.height.emission_per_m, 0.0, 1e9);
     check.in_range("medium.height.base_height_m", medium.height.base_height_m, -1e6, 1e6);
     check.in_range("medium.height.falloff_per_m", medium.height.falloff_per_m, 0.0, 1e3);
-    check.in_range("medium.noise.amplitude", medium.noise.amplitude, 0.0, 1.0);
-    check.in_range("medium.noise.scale_m", medium.noise.scale_m, 1e-3, 1e6);
-    check.in_range("medium.noise.wind_m_s", medium.noise.wind_m_s, -1e3, 1e3);
-    check.in_range("medium.noise.octaves", medium.noise.octaves, 1.0, DensityNoise::most_octaves);
-    check.in_range("medium.noise.gain", medium.noise.gain, 0.0, 1.0);
+    check_noise(medium.noise, check);
     check.in_range("phase.g", medium.phase_g, -0.999F, 0.999F);
     check.in_range("ambient.radiance", medium.ambient_radiance, 0.0, 1e9);
     check_lobes(medium.phase_lobes, check);

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 #include <tl/expected.hpp>
 
+#include "features/volumetrics/density_noise.hpp"
 #include "features/volumetrics/error.hpp"
 #include "features/volumetrics/local_volume.hpp"
 #include "features/volumetrics/phase.hpp"
@@ -30,22 +31,6 @@ struct HeightFog {
     float base_height_m = 0.0F;     ///< world height, [-1e6, 1e6]
     float falloff_per_m = 0.1F;     ///< [0, 1e3]
 };
-
-/// Octaves of gradient noise by which the density of all fog, its emission too, is multiplied: 1 + amplitude * noise.
-/// The noise is the mean of the octaves weighted by gain^i, in [-1, 1]; octave i + 1 at the point p, in cells, is
-/// octave i at 2 p + (17.375, 5.625, 11.125), which keeps octaves from vanishing at the same points.
-struct DensityNoise {
-    static constexpr std::uint32_t most_octaves = 8;
-
-    float amplitude = 0.0F;    ///< [0, 1]; 0: no noise
-    float scale_m = 4.0F;      ///< size of a cell of the first octave, [1e-3, 1e6]
-    glm::vec3 wind_m_s{0.0F};  ///< velocity with which the pattern moves, each in [-1e3, 1e3]
-    std::uint32_t octaves = 1; ///< [1, most_octaves], each twice as fine as the one before
-    float gain = 0.5F;         ///< weight of an octave over that of the one before, [0, 1]
-};
-
-/// Sum of the weights of the octaves, the first one's being 1.
-[[nodiscard]] double octave_weights(const DensityNoise& noise);
 
 /// sqrt(3 / (4 pi)): of the real spherical harmonics of order 1.
 inline constexpr double sh_1_constant = 0.48860251190291992;

@@ -72,17 +72,35 @@ glm::vec4 depth_coefficients(const glm::dmat4& p) {
     return glm::vec4(c);
 }
 
-/// The camera in noise cells, modulo the noise's period of 256, in double: far from the world's origin and late in time
-/// the fractions must survive.
-glm::vec4 noise_origin(const FrameInputs& frame) {
-    const DensityNoise& noise = frame.medium.noise;
-    glm::vec4 origin(0.0F, 0.0F, 0.0F, static_cast<double>(noise.amplitude) / octave_weights(noise));
+/// The camera in units of `scale_m`, modulo `period`, in double: far from the world's origin and late in time the
+/// fractions must survive.
+glm::vec3 noise_origin(const FrameInputs& frame, double scale_m, const glm::vec3& wind_m_s, double period) {
+    glm::vec3 origin(0.0F);
     for (int i = 0; i < 3; ++i) {
-        const double drift_m = static_cast<double>(noise.wind_m_s[i]) * frame.time_s;
-        const double cells = (frame.camera.origin_m[i] - drift_m) / static_cast<double>(noise.scale_m);
-        origin[i] = static_cast<float>(cells - 256.0 * std::floor(cells / 256.0));
+        const double drift_m = static_cast<double>(wind_m_s[i]) * frame.time_s;
+        const double cells = (frame.camera.origin_m[i] - drift_m) / scale_m;
+        origin[i] = static_cast<float>(cells - period * std::floor(cells / period));
     }
     return origin;
+}
+
+void write_noise(const FrameInputs& frame, gpu::VolumetricParameters& u) {
+    const DensityNoise& noise = frame.medium.noise;
+    const auto scale_m = static_cast<double>(noise.scale_m);
+    const auto amplitude = static_cast<double>(noise.amplitude);
+    if (!is_baked(noise)) {
+        u.noise_origin =
+            glm::vec4(noise_origin(frame, scale_m, noise.wind_m_s, 256.0), amplitude / octave_weights(noise));
+        u.noise_cells = glm::vec4(1.0F / noise.scale_m, noise.gain, 0.0F, 0.0F);
+        return;
+    }
+    const double shape_m = scale_m * DensityNoise::cells_per_period;
+    const double detail_m = static_cast<double>(noise.detail_scale_m) * DensityNoise::cells_per_period;
+    const double per_coverage = 1.0 / static_cast<double>(noise.coverage);
+    u.noise_origin = glm::vec4(noise_origin(frame, shape_m, noise.wind_m_s, 1.0), amplitude);
+    u.noise_cells = glm::vec4(1.0 / shape_m, 0.0, 0.0, 0.0);
+    u.noise_detail = glm::vec4(noise_origin(frame, detail_m, noise.detail_wind_m_s, 1.0), 1.0 / detail_m);
+    u.noise_cover = glm::vec4(per_coverage, 1.0 - per_coverage, noise.detail, 1.0 / mean_cover(noise));
 }
 
 glm::vec4 temporal_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before,
@@ -283,14 +301,13 @@ float radiance_scale_for(const FrameInputs& frame, const std::optional<FrameMemo
         const glm::vec3& sun = frame.sun->illuminance_lux;
         brightest += peak(phase_of(frame.medium)) * static_cast<double>(std::max({sun.x, sun.y, sun.z}));
     }
-    // The longest ray of the grid is the one along an edge of it; noise at most doubles what it gathers.
+    // The longest ray of the grid is the one along an edge of it.
     const gpu::ScatteringVolume volume = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
     const glm::dvec4 slope(volume.slope);
     const double slope_x = std::max(std::abs(slope.z), std::abs(slope.x + slope.z));
     const double slope_y = std::max(std::abs(slope.w), std::abs(slope.y + slope.w));
     const double longest_m = static_cast<double>(frame.settings.grid.range_m) * std::hypot(1.0, slope_x, slope_y);
-    brightest +=
-        (1.0 + static_cast<double>(frame.medium.noise.amplitude)) * emitted_radiance_bound(frame.medium, longest_m);
+    brightest += noise_bound(frame.medium.noise) * emitted_radiance_bound(frame.medium, longest_m);
     const double local = local_radiance(frame, longest_m);
     brightest += local;
     const double largest = 32768.0; // half of fp16's, which leaves room right beside local lights
@@ -359,9 +376,10 @@ bool is_perspective(const Camera& camera) {
 gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before) {
     const Medium& medium = frame.medium;
     const float radiance_scale = radiance_scale_for(frame, before);
-    // The densest at a quarter of fp16's largest, since noise at most doubles it; the thinnest 1e11 times below.
-    const float density_scale = 16384.0F / std::max(extinction_bound(medium), 1e-20F);
-    const float emission_scale = 16384.0F / std::max(emission_bound(medium), 1e-20F);
+    // The densest at a quarter of fp16's largest, noise of octaves at most doubling it; the thinnest 1e11 times below.
+    const float largest = 32768.0F / std::max(2.0F, static_cast<float>(noise_bound(medium.noise)));
+    const float density_scale = largest / std::max(extinction_bound(medium), 1e-20F);
+    const float emission_scale = largest / std::max(emission_bound(medium), 1e-20F);
     const glm::dmat3 render_from_view = glm::transpose(glm::dmat3(frame.camera.view_from_render));
 
     gpu::VolumetricParameters u{};
@@ -390,8 +408,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
                              medium.height.falloff_per_m, 0.0, 0.0);
     u.air = air_of(frame);
     u.air.w = static_cast<float>(frame.camera.origin_m.y - static_cast<double>(u.air.w));
-    u.noise_origin = noise_origin(frame);
-    u.noise_cells = glm::vec4(1.0F / medium.noise.scale_m, medium.noise.gain, 0.0F, 0.0F);
+    write_noise(frame, u);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
     u.emission_scale = glm::vec4(emission_scale, density_scale / emission_scale * radiance_scale, 0.0F, 0.0F);
     write_phase(medium, u);

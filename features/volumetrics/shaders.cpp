@@ -10,10 +10,14 @@
 #include "spirv/accumulation_fp32_e0_m1.h"
 #include "spirv/accumulation_fp32_e1_m0.h"
 #include "spirv/accumulation_fp32_e1_m1.h"
-#include "spirv/density_injection_fp16_m0.h"
-#include "spirv/density_injection_fp16_m1.h"
-#include "spirv/density_injection_fp32_m0.h"
-#include "spirv/density_injection_fp32_m1.h"
+#include "spirv/density_injection_fp16_m0_t0.h"
+#include "spirv/density_injection_fp16_m0_t1.h"
+#include "spirv/density_injection_fp16_m1_t0.h"
+#include "spirv/density_injection_fp16_m1_t1.h"
+#include "spirv/density_injection_fp32_m0_t0.h"
+#include "spirv/density_injection_fp32_m0_t1.h"
+#include "spirv/density_injection_fp32_m1_t0.h"
+#include "spirv/density_injection_fp32_m1_t1.h"
 #include "spirv/esm_blur.h"
 #include "spirv/esm_downsample.h"
 #include "spirv/fog_on_opaque.h"
@@ -75,6 +79,7 @@
 #include "spirv/froxel_lighting_fp32_s1_l31_h1.h"
 #include "spirv/full_screen.h"
 #include "spirv/light_clustering.h"
+#include "spirv/noise_bake.h"
 
 namespace tyndall::volumetrics {
 namespace {
@@ -84,7 +89,11 @@ constexpr VkDescriptorType sampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType storage_image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType storage_buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
-constexpr ShaderBinding density_bindings[] = {{0, uniform}, {1, storage_image}, {2, storage_image}};
+// Without emission (2), without textures.
+constexpr ShaderBinding density_bindings[] = {
+    {0, uniform}, {1, storage_image}, {2, storage_image}, {3, sampled}, {4, sampled}};
+constexpr ShaderBinding dark_density_bindings[] = {{0, uniform}, {1, storage_image}, {3, sampled}, {4, sampled}};
+constexpr ShaderBinding bake_bindings[] = {{0, storage_buffer}};
 constexpr ShaderBinding clustering_bindings[] = {
     {0, uniform}, {1, uniform}, {2, storage_buffer}, {3, storage_buffer}, {4, storage_buffer}};
 constexpr ShaderBinding downsample_bindings[] = {{0, uniform}, {1, sampled}, {2, storage_image}};
@@ -168,12 +177,20 @@ const std::span<const std::uint32_t> lighting_code[] = {
 
 } // namespace
 
-ShaderCode density_injection_shader(StorageFormat storage, bool emission) {
-    const std::span<const std::uint32_t> code[] = {density_injection_fp16_m0, density_injection_fp16_m1,
-                                                   density_injection_fp32_m0, density_injection_fp32_m1};
-    const std::size_t format = storage == StorageFormat::fp16 ? 0 : 2;
-    return {"density injection", code[format + (emission ? 1 : 0)],
-            std::span(density_bindings).first(emission ? 3 : 2)};
+ShaderCode density_injection_shader(StorageFormat storage, bool emission, bool textures) {
+    const std::span<const std::uint32_t> code[] = {density_injection_fp16_m0_t0, density_injection_fp16_m0_t1,
+                                                   density_injection_fp16_m1_t0, density_injection_fp16_m1_t1,
+                                                   density_injection_fp32_m0_t0, density_injection_fp32_m0_t1,
+                                                   density_injection_fp32_m1_t0, density_injection_fp32_m1_t1};
+    const std::size_t format = storage == StorageFormat::fp16 ? 0 : 4;
+    const std::span<const ShaderBinding> all = emission ? std::span<const ShaderBinding>(density_bindings)
+                                                        : std::span<const ShaderBinding>(dark_density_bindings);
+    return {"density injection", code[format + (emission ? 2 : 0) + (textures ? 1 : 0)],
+            textures ? all : all.first(emission ? 3 : 2)};
+}
+
+ShaderCode noise_bake_shader() {
+    return {"noise bake", noise_bake, bake_bindings};
 }
 
 ShaderCode light_clustering_shader() {

@@ -34,7 +34,9 @@ struct LightingVariant {
     bool history = false;
 };
 
-[[nodiscard]] ShaderCode density_injection_shader(StorageFormat storage, bool emission);
+/// `textures`: for media that are made of textures.
+[[nodiscard]] ShaderCode density_injection_shader(StorageFormat storage, bool emission, bool textures);
+[[nodiscard]] ShaderCode noise_bake_shader();
 [[nodiscard]] ShaderCode light_clustering_shader();
 [[nodiscard]] ShaderCode esm_downsample_shader();
 [[nodiscard]] ShaderCode esm_blur_shader();

@@ -1,4 +1,4 @@
-// One octave of gradient noise (Perlin, "Improving Noise", 2002, with hashed gradients), of period 256 cells.
+// One octave of gradient noise (Perlin, "Improving Noise", 2002, with hashed gradients).
 #ifndef TYNDALL_SHADERS_COMMON_NOISE_GLSL
 #define TYNDALL_SHADERS_COMMON_NOISE_GLSL
 
@@ -17,14 +17,14 @@ float lattice(uint hash, float x, float y, float z) {
     return gradient.x * x + gradient.y * y + gradient.z * z;
 }
 
-// Mean 0, within [-1, 1]; p in cells.
-float gradient_noise(vec3 p) {
+// Mean 0, within [-1, 1]; p in cells; of period mask + 1 cells, a power of two.
+float tiled_gradient_noise(vec3 p, uint mask, uint seed) {
     vec3 base = floor(p);
     vec3 a = p - base;
     vec3 b = a - 1.0;
     uvec3 cell = uvec3(ivec3(base));
-    uvec3 h0 = (cell & 255u) * uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
-    uvec3 h1 = ((cell + 1u) & 255u) * uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
+    uvec3 h0 = (cell & mask) * uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu) ^ uvec3(seed, 0u, 0u);
+    uvec3 h1 = ((cell + 1u) & mask) * uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu) ^ uvec3(seed, 0u, 0u);
     vec3 w = a * a * a * (a * (a * 6.0 - 15.0) + 10.0);
     float x00 = mix(lattice(lattice_hash(h0.x, h0.y, h0.z), a.x, a.y, a.z),
                     lattice(lattice_hash(h1.x, h0.y, h0.z), b.x, a.y, a.z), w.x);
@@ -36,5 +36,8 @@ float gradient_noise(vec3 p) {
                     lattice(lattice_hash(h1.x, h1.y, h1.z), b.x, b.y, b.z), w.x);
     return clamp(1.25 * mix(mix(x00, x10, w.y), mix(x01, x11, w.y), w.z), -1.0, 1.0);
 }
+
+// Of period 256 cells.
+float gradient_noise(vec3 p) { return tiled_gradient_noise(p, 255u, 0u); }
 
 #endif

@@ -1,6 +1,6 @@
 // Media -> scattering coefficient (rgb) and extinction (a) of each froxel, times density_scale so that fp16 holds thin
 // and dense media alike. One pass, specialised to the media that are there. EMISSION 1: and the radiance gained per
-// metre (rgb), times emission_scale.
+// metre (rgb), times emission_scale. TEXTURES 1: media of textures may be there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -17,7 +17,7 @@ layout(constant_id = 8) const bool has_depth_curve = false;
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
 layout(constant_id = 3) const bool has_homogeneous = true;
 layout(constant_id = 4) const bool has_height = true;
-layout(constant_id = 5) const uint noise_octaves = 1u; // 0: no noise
+layout(constant_id = 5) const uint noise_octaves = 1u; // 0: no noise of octaves
 layout(constant_id = 6) const bool is_perspective = true;
 layout(constant_id = 7) const bool has_volumes = false;
 
@@ -26,9 +26,16 @@ layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D d
 #if EMISSION
 layout(set = 0, binding = 2, VOLUME_FORMAT) uniform writeonly restrict image3D emitted;
 #endif
+#if TEXTURES
+layout(set = 0, binding = 3) uniform sampler3D noise_shape; // these repeat in every direction
+layout(set = 0, binding = 4) uniform sampler3D noise_detail;
+layout(constant_id = 9) const bool has_baked_noise = false;
+#else
+const bool has_baked_noise = false;
+#endif
 
-// The octaves of DensityNoise, features/volumetrics/medium.hpp, faded where a froxel is too large to show them.
-float noise_factor(vec3 render_position, float froxel_m) {
+// The octaves of features/volumetrics/density_noise.hpp, faded where a froxel is too large to show them.
+float octave_noise_factor(vec3 render_position, float froxel_m) {
     float cells = froxel_m * u.noise_cells.x;
     float amplitude = u.noise_origin.w;
     vec3 p = render_position * u.noise_cells.x + u.noise_origin.xyz;
@@ -40,6 +47,30 @@ float noise_factor(vec3 render_position, float froxel_m) {
         p = 2.0 * p + vec3(17.375, 5.625, 11.125);
     }
     return factor;
+}
+
+#if TEXTURES
+// NoiseKind::perlin_worley of features/volumetrics/density_noise.hpp. Where a froxel is too large to show the cells of a
+// volume, four a period, its means take its place: those of the detail leave the noise's mean as it is.
+float baked_noise_factor(vec3 render_position, float froxel_m) {
+    float shape_part = clamp(2.0 - 8.0 * froxel_m * u.noise_cells.x, 0.0, 1.0);
+    float detail_part = clamp(2.0 - 8.0 * froxel_m * u.noise_detail.w, 0.0, 1.0);
+    float shape = textureLod(noise_shape, render_position * u.noise_cells.x + u.noise_origin.xyz, 0.0).r;
+    float detail = textureLod(noise_detail, render_position * u.noise_detail.w + u.noise_detail.xyz, 0.0).r;
+    float cover = max(shape * u.noise_cover.x + u.noise_cover.y, 0.0);
+    float eroded = u.noise_cover.z * mix(0.5, detail, detail_part);
+    float left = max(cover - eroded, 0.0) / (1.0 - eroded);
+    return 1.0 + u.noise_origin.w * shape_part * (left * u.noise_cover.w - 1.0);
+}
+#endif
+
+float noise_factor(vec3 render_position, float froxel_m) {
+#if TEXTURES
+    if (has_baked_noise) {
+        return baked_noise_factor(render_position, froxel_m);
+    }
+#endif
+    return octave_noise_factor(render_position, froxel_m);
 }
 
 void main() {
@@ -71,7 +102,7 @@ void main() {
             blend_local_volume(u.volumes[i], eye + ray * near_m, eye + ray * far_m, medium, emission);
         }
     }
-    if (noise_octaves > 0u) {
+    if (noise_octaves > 0u || has_baked_noise) {
         float middle_m = 0.5 * (near_m + far_m);
         vec2 cell = (u.volume.slope.xy * middle_m + u.volume.origin.xy) / (grid.xy - 1.0);
         float froxel_m = max(max(abs(cell.x), abs(cell.y)), (far_m - near_m) * length(ray));

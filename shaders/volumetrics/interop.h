@@ -31,8 +31,13 @@ struct VolumetricParameters {
     vec4 height_emission;      // the same at and below the base
     vec4 height_law;      // x: base height above the camera, m; y: falloff, 1/m; zw 0
     vec4 air;             // see common/light_attenuation.glsl
-    vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude of the first octave
-    vec4 noise_cells;     // x: cells per metre; y: amplitude of an octave over that of the one before; zw 0
+    // Of noise as octaves, of noise as volumes:
+    vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude of the first octave.
+                          // Volumes: in periods of the shape, in [0, 1); w: amplitude
+    vec4 noise_cells;     // x: cells per metre; y: amplitude of an octave over that of the one before; zw 0.
+                          // Volumes: x: periods of the shape per metre
+    vec4 noise_detail;    // xyz: the camera in periods of the detail, its wind included, in [0, 1); w: periods per metre
+    vec4 noise_cover;     // cover by the shape's value s: x s + y; z: what the detail takes at most; w: 1 / mean
     vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0
     vec4 emission_scale;  // x: stored emission is the true one (cd/m^3) times x; y: stored emission times y has the unit of
                           // a stored coefficient times stored radiance; zw 0

@@ -255,6 +255,13 @@ FogTest::ReadBack FogTest::declare_view(rg::GraphBuilder& graph, std::vector<rg:
         rg::Buffer target = import_read("masks out", graph.describe(masks)->size_bytes, out.masks);
         download(graph, named("read masks"), masks, target);
     }
+    for (std::size_t i = 0; i < out.baked_noise.size(); ++i) {
+        if (const rg::Buffer texels = feature_->stages(view).baked_noise[i]; texels.valid()) {
+            rg::Buffer target =
+                import_read("noise out " + std::to_string(i), graph.describe(texels)->size_bytes, out.baked_noise[i]);
+            download(graph, named("read noise " + std::to_string(i)), texels, target);
+        }
+    }
     const auto bindings = feature_->bindings(view);
     imports.insert(imports.end(), bindings.begin(), bindings.end());
     for (const Omission& omission : feature_->omissions(view)) {
@@ -277,6 +284,13 @@ Result FogTest::ReadBack::collect() && {
     }
     if (masks.mapped != nullptr) {
         result.masks.assign(masks.as<std::uint32_t>().begin(), masks.as<std::uint32_t>().end());
+    }
+    for (std::size_t i = 0; i < baked_noise.size(); ++i) {
+        for (const std::uint32_t pair :
+             baked_noise[i].mapped != nullptr ? baked_noise[i].as<std::uint32_t>() : std::span<std::uint32_t>()) {
+            const glm::vec2 values = glm::unpackHalf2x16(pair);
+            result.baked_noise[i].insert(result.baked_noise[i].end(), {values.x, values.y});
+        }
     }
     return std::move(result);
 }

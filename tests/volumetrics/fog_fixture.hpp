@@ -2,6 +2,7 @@
 // texel, lights by hand; and everything that the passes made, read back.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -63,6 +64,7 @@ struct Result {
     std::vector<glm::vec4> accumulated;
     std::vector<float> esm;
     std::vector<std::uint32_t> masks;
+    std::array<std::vector<float>, 2> baked_noise; ///< shape and detail, where the frame has baked them
     std::vector<std::string> pass_names;
     std::vector<std::string> omissions;
 };
@@ -91,6 +93,7 @@ private:
         tyndall::test::HostBuffer accumulated;
         tyndall::test::HostBuffer esm;
         tyndall::test::HostBuffer masks;
+        std::array<tyndall::test::HostBuffer, 2> baked_noise;
     };
     [[nodiscard]] ReadBack declare_view(rg::GraphBuilder& graph, std::vector<rg::ImportBinding>& imports,
                                         const Scene& scene, std::uint32_t view);

@@ -162,6 +162,41 @@ TEST(FogJson, ReadsPhaseLobesAndDirectedAmbient) {
     EXPECT_EQ(fog->medium.ambient_sh_1[2], glm::vec3(0, 0, 1));
 }
 
+TEST(FogJson, ReadsNoiseOfVolumes) {
+    const auto fog = parse_fog_json(R"({"medium": {"noise": {"kind": "perlin_worley", "amplitude": 1, "scale_m": 20,
+        "wind_m_s": [1, 0, 2], "coverage": 0.25, "detail": 0.75, "detail_scale_m": 3,
+        "detail_wind_m_s": [0, 0, 4]}}})");
+    ASSERT_TRUE(fog) << fog.error().message;
+    const DensityNoise& noise = fog->medium.noise;
+    EXPECT_EQ(noise.kind, NoiseKind::perlin_worley);
+    EXPECT_EQ(noise.coverage, 0.25F);
+    EXPECT_EQ(noise.detail, 0.75F);
+    EXPECT_EQ(noise.detail_scale_m, 3.0F);
+    EXPECT_EQ(noise.detail_wind_m_s, glm::vec3(0.0F, 0.0F, 4.0F));
+    const auto plain =
+        parse_fog_json(R"({"medium": {"noise": {"kind": "perlin_worley", "scale_m": 20, "wind_m_s": [1, 0, 2]}}})");
+    ASSERT_TRUE(plain) << plain.error().message;
+    EXPECT_EQ(plain->medium.noise.detail_scale_m, 5.0F);
+    EXPECT_EQ(plain->medium.noise.detail_wind_m_s, glm::vec3(1.0F, 0.0F, 2.0F));
+}
+
+TEST(FogJson, ImpossibleNoisesNameKeyAndRange) {
+    const auto noise = [](const std::string& keys) {
+        return refusal(R"({"medium": {"noise": {"kind": "perlin_worley", )" + keys + "}}}");
+    };
+    EXPECT_EQ(refusal(R"({"medium": {"noise": {"kind": "simplex"}}})"),
+              "medium.noise.kind must be one of \"perlin\", \"perlin_worley\".");
+    EXPECT_EQ(refusal(R"({"medium": {"noise": {"coverage": 0.5}}})"),
+              "medium.noise.coverage is not a key of the fog file.");
+    EXPECT_EQ(noise(R"("octaves": 2)"), "medium.noise.octaves is not a key of the fog file.");
+    EXPECT_EQ(noise(R"("coverage": 0)"), "medium.noise.coverage must be between 0.01 and 1, not 0.");
+    EXPECT_EQ(noise(R"("detail": 1)"), "medium.noise.detail must be between 0 and 0.95, not 1.");
+    EXPECT_EQ(noise(R"("detail": NaN)"), "medium.noise.detail must be between 0 and 0.95, not nan.");
+    EXPECT_EQ(noise(R"("detail_scale_m": 0)"), "medium.noise.detail_scale_m must be between 0.0001 and 1e+06, not 0.");
+    EXPECT_EQ(noise(R"("detail_wind_m_s": [0, 0, 2000])"),
+              "medium.noise.detail_wind_m_s[2] must be between -1000 and 1000, not 2000.");
+}
+
 TEST(FogJson, ReadsLocalVolumes) {
     const auto fog = parse_fog_json(R"({"medium": {"volumes": [
         {"shape": "box", "center_m": [1, 2, 3], "half_size_m": [4, 5, 6], "rotation": [0, 0.6, 0, 0.8], "edge": 0.25,

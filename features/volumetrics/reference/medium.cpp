@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "features/volumetrics/reference/noise.hpp"
+#include "features/volumetrics/reference/noise_volumes.hpp"
 #include "features/volumetrics/reference/quadrature.hpp"
 
 namespace tyndall::volumetrics::reference {
@@ -108,6 +109,17 @@ double Fog::noise_factor(const glm::dvec3& point) const {
         return 1.0;
     }
     const glm::dvec3 cells = (point - glm::dvec3(noise.wind_m_s) * time_s_) / static_cast<double>(noise.scale_m);
+    if (noise.kind == NoiseKind::perlin_worley) {
+        const glm::dvec3 detail_cells =
+            (point - glm::dvec3(noise.detail_wind_m_s) * time_s_) / static_cast<double>(noise.detail_scale_m);
+        const auto coverage = static_cast<double>(noise.coverage);
+        const auto most = static_cast<double>(noise.detail);
+        const double cover = std::fmax(0.0, 1.0 - (1.0 - NoiseVolume::shape().at(cells / 4.0)) / coverage);
+        const double eroded = most * NoiseVolume::detail().at(detail_cells / 4.0);
+        const double left = std::fmax(0.0, cover - eroded) / (1.0 - eroded);
+        const double mean = coverage * (2.0 - most) / 4.0;
+        return 1.0 - static_cast<double>(noise.amplitude) * (1.0 - left / mean);
+    }
     return 1.0 + static_cast<double>(noise.amplitude) * octave_noise(cells, noise.octaves, noise.gain);
 }
 
@@ -218,7 +230,16 @@ void Fog::add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks)
 
 void Fog::add_seams(const Ray& ray, Interval part, std::vector<double>& seams) const {
     const DensityNoise& noise = medium_->noise;
-    if (noise.amplitude > 0.0F) {
+    if (noise.amplitude > 0.0F && noise.kind == NoiseKind::perlin_worley) {
+        // Between planes through the texels' centres the volumes are polynomials.
+        const auto add = [&](const NoiseVolume& volume, double cell_m, const glm::vec3& wind_m_s) {
+            const double texel_m = 4.0 * cell_m / volume.size();
+            const glm::dvec3 origin = (ray.origin - glm::dvec3(wind_m_s) * time_s_) / texel_m - 0.5;
+            add_lattice_crossings(origin, ray.direction / texel_m, part, most_crossings, seams);
+        };
+        add(NoiseVolume::shape(), static_cast<double>(noise.scale_m), noise.wind_m_s);
+        add(NoiseVolume::detail(), static_cast<double>(noise.detail_scale_m), noise.detail_wind_m_s);
+    } else if (noise.amplitude > 0.0F) {
         const auto scale_m = static_cast<double>(noise.scale_m);
         glm::dvec3 origin = (ray.origin - glm::dvec3(noise.wind_m_s) * time_s_) / scale_m;
         glm::dvec3 direction = ray.direction / scale_m;
