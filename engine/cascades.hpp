@@ -26,7 +26,7 @@ inline constexpr std::uint32_t most_cascades = 4;
 
 struct CascadeSettings {
     std::uint32_t count = 4;         ///< 1 to 4
-    std::uint32_t resolution = 1024; ///< texels of a side, [64, 8192]
+    std::uint32_t resolution = 2048; ///< texels of a side, [64, 8192]
     std::optional<double> range_m;   ///< view depth up to which there are shadows; absent: as far as the scene reaches
     double log_share = 0.5;          ///< 0: slices of equal length; 1: of equal ratio
 };

@@ -69,7 +69,7 @@ void ForwardInputs::push(rg::PassContext& ctx, VkPipelineLayout layout) const {
     bind(ctx.storage(1, instances));
     if (sun) {
         bind(ctx.uniform(2, sun->parameters));
-        bind(ctx.sampled(3, sun->cascades, shadow_sampler, {.type = VK_IMAGE_VIEW_TYPE_2D_ARRAY}));
+        bind(ctx.sampled(3, sun->cascades, nearest_sampler, {.type = VK_IMAGE_VIEW_TYPE_2D_ARRAY}));
     }
     if (lights) {
         bind(ctx.storage(4, lights->lights));

@@ -20,7 +20,6 @@ struct ForwardInputs {
     std::optional<LightClusters> clusters;
     std::optional<ScatteringVolumeImages> scattering; ///< for transparents only
     bool air = false;                                 ///< weakens light on its way
-    VkSampler shadow_sampler = VK_NULL_HANDLE;
     VkSampler linear_sampler = VK_NULL_HANDLE;
     VkSampler nearest_sampler = VK_NULL_HANDLE;
 

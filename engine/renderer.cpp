@@ -15,16 +15,14 @@ float largest_radiance(VkFormat format) {
     return format == VK_FORMAT_R16G16B16A16_SFLOAT ? 65000.0F : 1e30F;
 }
 
-tl::expected<DeviceSampler, Error> make_sampler(const Device& device, VkFilter filter, bool compares) {
+tl::expected<DeviceSampler, Error> make_sampler(const Device& device, VkFilter filter) {
     return create_sampler(device, {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .magFilter = filter,
                                    .minFilter = filter,
                                    .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
                                    .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                   .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                   .compareEnable = compares ? VK_TRUE : VK_FALSE,
-                                   .compareOp = VK_COMPARE_OP_LESS_OR_EQUAL});
+                                   .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
 }
 
 } // namespace
@@ -64,15 +62,13 @@ tl::expected<void, Error> Renderer::make(VkPipelineCache cache, std::uint32_t fr
         return tl::unexpected(frame_data.error());
     }
     frame_data_ = std::move(*frame_data);
-    auto shadow = make_sampler(*device_, VK_FILTER_NEAREST, true);
-    auto linear = make_sampler(*device_, VK_FILTER_LINEAR, false);
-    auto nearest = make_sampler(*device_, VK_FILTER_NEAREST, false);
-    for (const auto* sampler : {&shadow, &linear, &nearest}) {
+    auto linear = make_sampler(*device_, VK_FILTER_LINEAR);
+    auto nearest = make_sampler(*device_, VK_FILTER_NEAREST);
+    for (const auto* sampler : {&linear, &nearest}) {
         if (!*sampler) {
             return tl::unexpected(sampler->error());
         }
     }
-    shadow_sampler_ = std::move(*shadow);
     linear_sampler_ = std::move(*linear);
     nearest_sampler_ = std::move(*nearest);
     return {};

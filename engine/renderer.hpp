@@ -168,7 +168,6 @@ private:
     SceneGpu scene_gpu_;
     std::optional<RendererPipelines> pipelines_;
     FrameData frame_data_;
-    DeviceSampler shadow_sampler_;  ///< compares, nearest
     DeviceSampler linear_sampler_;  ///< clamps
     DeviceSampler nearest_sampler_; ///< clamps
     std::optional<ShadowCache> cascade_cache_;

@@ -82,7 +82,7 @@ struct PrecisionConfiguration {
     Size grid{volumetrics::Settings{}.grid.width, volumetrics::Settings{}.grid.height}; ///< columns of froxels
     std::uint32_t slices = volumetrics::Settings{}.grid.slices;
     volumetrics::StorageFormat storage = volumetrics::Settings{}.storage;
-    std::uint32_t cascade_texels = 1024; ///< of a side of the sun's shadow cascades
+    std::uint32_t cascade_texels = 2048; ///< of a side of the sun's shadow cascades
 
     bool operator==(const PrecisionConfiguration&) const = default;
 };
