@@ -51,6 +51,11 @@ struct Destination {
 };
 
 void add_barrier(FrameWork& work, const Dependency& d, Source source, Destination destination, Families families) {
+    if (d.orders_for != none) {
+        work.memory_barriers.push_back({.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                        .srcStageMask = source.stages,
+                                        .dstStageMask = destination.stages});
+    }
     const ResourceDesc& desc = work.graph->resources[d.resource];
     const PhysicalObject* object = work.objects[d.resource];
     if (object == nullptr) {

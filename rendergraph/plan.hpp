@@ -134,6 +134,9 @@ struct Dependency {
     std::uint32_t src_family = VK_QUEUE_FAMILY_IGNORED; ///< set when transfers_ownership
     std::uint32_t dst_family = VK_QUEUE_FAMILY_IGNORED;
     std::uint32_t alias_of = none; ///< for aliased_memory: the resource that lived there
+    /// A resource whose uses rely on this order, so that they need no barrier of their own. The executor then says it
+    /// of all memory, for validation that takes a resource's barrier for that resource's alone.
+    std::uint32_t orders_for = none;
 };
 
 /// Load and store operations of one attachment access, in order of GraphDesc::accesses.

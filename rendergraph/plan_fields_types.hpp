@@ -107,6 +107,7 @@ void fields(V& v, Dependency& d) {
     v.value("src_family", d.src_family);
     v.value("dst_family", d.dst_family);
     v.index_or_none("alias_of", d.alias_of, Table::resources);
+    v.index_or_none("orders_for", d.orders_for, Table::resources);
 }
 template <typename V>
 void fields(V& v, AttachmentOps& a) {

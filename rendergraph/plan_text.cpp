@@ -112,6 +112,9 @@ std::string describe(const GraphDesc& graph, const Dependency& d) {
     if (d.alias_of != none) {
         text += ", in the memory of " + quoted(graph.resources[d.alias_of].name);
     }
+    if (d.orders_for != none) {
+        text += ", and what " + quoted(graph.resources[d.orders_for].name) + " needs no other for";
+    }
     text += ": " + mask_text(stage_names(), d.src_stages) + " (" + mask_text(access_names(), d.src_access) + ") -> " +
             mask_text(stage_names(), d.dst_stages) + " (" + mask_text(access_names(), d.dst_access) + ")";
     if (d.old_layout != d.new_layout) {

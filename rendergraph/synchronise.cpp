@@ -26,7 +26,7 @@ public:
         for (std::uint32_t resource = 0; resource < graph_.resources.size(); ++resource) {
             visit(resource);
         }
-        collect(all_, exit_slot_, out_);
+        collect(all_, schedule_, out_);
         return std::move(out_);
     }
 
@@ -80,13 +80,21 @@ private:
             for (const std::uint32_t other : memory_.taken_over_by(resource)) {
                 before.entry = Hazard::aliased_memory;
                 before.alias_of = before.alias_of == none ? other : before.alias_of;
-                for (const Use& use : uses_of(other)) {
-                    entry_uses_.push_back(&use);
-                }
+                add_last_uses(other);
             }
             before.uses = entry_uses_;
         }
         return before;
+    }
+
+    /// Adds to entry_uses_ what the resource's uses end with, of each cell: all others come before those, and what they
+    /// wrote is available to them.
+    void add_last_uses(std::uint32_t resource) {
+        cell_uses_.sort(cells_.of_resource[resource], uses_of(resource));
+        for (std::uint32_t cell = 0; cell < cells_.of_resource[resource].count(); ++cell) {
+            const Uses last = last_group(cell_uses_.of(cell));
+            entry_uses_.insert(entry_uses_.end(), last.begin(), last.end());
+        }
     }
 
     void visit(std::uint32_t resource) {
@@ -117,6 +125,18 @@ private:
         return {uses.first(count), first.writes, first.writes && !first.reads, first.scope.layout};
     }
 
+    /// The group that `uses` ends with.
+    static Uses last_group(Uses uses) {
+        std::size_t count = std::min<std::size_t>(uses.size(), 1);
+        const auto joins = [&](const Use& use) {
+            return !use.writes && !uses.back()->writes && use.scope.layout == uses.back()->scope.layout;
+        };
+        while (count < uses.size() && joins(*uses[uses.size() - count - 1])) {
+            ++count;
+        }
+        return uses.last(count);
+    }
+
     void visit_cell(std::uint32_t resource, std::uint32_t cell, Uses uses, const Before& entry) {
         Before before = entry;
         const bool untouched = uses.empty();
@@ -136,7 +156,7 @@ private:
         }
         if (!untouched) {
             leave(resource, cell, before);
-        } else if (changes_untouched_parts(graph_, resource, schedule_.concurrent[resource])) {
+        } else if (changes_untouched_parts(graph_, resource, is_shared(resource))) {
             const Use* last = &uses_of(resource).back(); // it takes the part along
             const Group along{{&last, 1}, false, false, graph_.imports[graph_.resources[resource].import].final_layout};
             connect(resource, cell, before, along);
@@ -146,12 +166,18 @@ private:
         }
     }
 
+    /// No family owns it.
+    [[nodiscard]] bool is_shared(std::uint32_t resource) const {
+        return graph_.resources[resource].concurrent || schedule_.concurrent[resource] ||
+               memory_.placements[resource].concurrent;
+    }
+
     /// What is left as it is: no write, no other layout, no other owner.
     [[nodiscard]] bool keeps_state(std::uint32_t resource, const Before& before, const Group& group) const {
         const auto family = [&](const Use* use) { return topology_.queues[use->queue].family; };
         const std::uint32_t owner = before.uses.empty() ? before.host_family : family(before.uses.back());
         const bool same_owner =
-            schedule_.concurrent[resource] || owner == VK_QUEUE_FAMILY_IGNORED ||
+            is_shared(resource) || owner == VK_QUEUE_FAMILY_IGNORED ||
             std::all_of(group.uses.begin(), group.uses.end(), [&](const Use* use) { return family(use) == owner; });
         return !group.writes && before.layout == group.layout && same_owner;
     }
@@ -180,6 +206,7 @@ private:
             after_leader.uses = group.uses.first(1);
             after_leader.layout = group.layout;
             after_leader.in_frame = true;
+            after_leader.written = true; // the transition
             for_first_on_other_queues(group, leader.queue, [&](const Use& use) {
                 if (transition) {
                     emit(resource, cell, after_leader, group, use, false);
@@ -249,7 +276,7 @@ private:
             }
         }
         // A transition wants its sources named; everything else that came back with a wait is in the past already.
-        add_sources(d, before, consumer.queue,
+        add_sources(made, before, consumer.queue,
                     transition || full_barriers_ ? Return{} : schedule_.returns[consumer.slot]);
         d.new_layout = group.layout;
         d.old_layout = !transition                         ? group.layout
@@ -262,16 +289,24 @@ private:
         if (before.uses.empty() && d.src_stages == 0) {
             // Whole frames are ordered by the executor, hosts' uses by a semaphore or by submission: what remains is a
             // transition, chained to that by its own stages.
-            d.src_stages = d.local_stages = d.dst_stages;
+            d.src_stages = d.local_stages = d.dst_stages & (~d.dst_stages + 1); // any one of them
+        } else if (!transition && !d.transfers_ownership && d.src_access == 0 && !before.written) {
+            d.dst_access = 0; // order alone matters: there is nothing new to see
         }
         return made;
     }
 
-    void add_sources(Dependency& d, const Before& before, std::uint32_t consumer_queue, const Return& returned) const {
+    void add_sources(FoundDependency& made, const Before& before, std::uint32_t consumer_queue,
+                     const Return& returned) const {
+        Dependency& d = made.dependency;
         d.src_stages = nameable(topology_.queues[consumer_queue].capabilities, before.host_stages);
         d.src_access = before.host_access & any_write;
-        d.local_stages = d.src_stages;
-        d.local_access = d.src_access;
+        if (returned.passes == 0) {
+            d.local_stages = d.src_stages;
+            d.local_access = d.src_access;
+        } else if (d.src_stages != 0) {
+            d.src_queue = returned.from; // the host's work came back with the queue's own
+        }
         std::uint32_t last_slot = 0;
         for (const Use* use : before.uses) {
             const VkAccessFlags2 written = use->writes ? use->scope.access & any_write : VkAccessFlags2{0};
@@ -281,6 +316,9 @@ private:
             if (own && schedule_.position[use->slot] >= returned.passes) {
                 d.local_stages |= use->scope.stages;
                 d.local_access |= written;
+                const bool has_stages = use->scope.stages != 0;
+                made.after_passes =
+                    std::max(made.after_passes, has_stages ? schedule_.position[use->slot] + 1 : std::uint32_t{0});
             } else {
                 d.src_queue = own ? returned.from : use->queue;
             }
@@ -307,7 +345,7 @@ private:
     /// EXCLUSIVE resources whose content crosses families are released by the last use and acquired by the next.
     void set_ownership(Dependency& d, FoundDependency& made, std::uint32_t resource, const Before& before,
                        std::uint32_t family) const {
-        if (schedule_.concurrent[resource] || memory_.placements[resource].concurrent || d.discards) {
+        if (is_shared(resource) || d.discards) {
             return;
         }
         std::uint32_t owner = before.host_family;
@@ -334,6 +372,20 @@ private:
         record(made, cell);
     }
 
+    /// What made the content visible to the readers made it visible to such an access as well: the masks of a group are
+    /// one barrier's.
+    static bool sees_as_much(const Before& before, std::uint32_t queue, VkPipelineStageFlags2 stages,
+                             VkAccessFlags2 access) {
+        for (const Use* use : before.uses) {
+            if (use->writes || use->queue != queue) {
+                return false;
+            }
+            stages &= ~use->scope.stages;
+            access &= ~use->scope.access;
+        }
+        return stages == 0 && access == 0;
+    }
+
     void leave(std::uint32_t resource, std::uint32_t cell, const Before& before) {
         const ResourceDesc& desc = graph_.resources[resource];
         Group after;
@@ -341,14 +393,12 @@ private:
         const Use& last = *before.uses.back();
         VkPipelineStageFlags2 stages = 0;
         VkAccessFlags2 access = 0;
-        bool signals = false;
         Hazard hazard = Hazard::import_exit;
         if (desc.import != none && graph_.imports[desc.import].has_final) {
             const ImportDesc& import = graph_.imports[desc.import];
             after.layout = import.final_layout;
             stages = import.final_stages;
             access = import.final_access;
-            signals = import.signals_semaphore;
             family = import.final_family;
         } else if (desc.has_history && desc.kind == ResourceKind::image) {
             after.layout = out_.resting_layout[resource];
@@ -359,11 +409,11 @@ private:
         const bool transition = desc.kind == ResourceKind::image && after.layout != VK_IMAGE_LAYOUT_UNDEFINED &&
                                 after.layout != before.layout;
         const std::uint32_t own_family = topology_.queues[last.queue].family;
-        const bool transfers =
-            family != VK_QUEUE_FAMILY_IGNORED && family != own_family && !schedule_.concurrent[resource];
-        const bool reads_what_was_there = hazard == Hazard::import_exit && !before.written && !signals &&
-                                          (access & any_write) == 0 && !full_barriers_;
-        if (!transition && !transfers && (stages == 0 || reads_what_was_there)) {
+        const bool transfers = family != VK_QUEUE_FAMILY_IGNORED && family != own_family && !is_shared(resource);
+        const bool only_read = hazard == Hazard::import_exit && (access & any_write) == 0 && !full_barriers_;
+        const bool needs_nothing =
+            stages == 0 || (only_read && (!before.written || sees_as_much(before, last.queue, stages, access)));
+        if (!transition && !transfers && needs_nothing) {
             return;
         }
         FoundDependency made{.slot = exit_slot_};
@@ -371,10 +421,11 @@ private:
         d.resource = resource;
         d.hazard = hazard;
         d.src_queue = d.dst_queue = last.queue;
-        add_sources(d, before, last.queue, {});
+        add_sources(made, before, last.queue, {});
         d.src_queue = last.queue; // the others are ordered before the last use
         d.dst_stages = nameable(topology_.queues[last.queue].capabilities, stages);
-        d.dst_access = access;
+        // Where nothing was written order alone matters.
+        d.dst_access = transition || transfers || d.src_access != 0 || before.written ? access : 0;
         d.old_layout = before.layout;
         d.new_layout = transition ? after.layout : before.layout;
         d.transfers_ownership = transfers;
@@ -402,6 +453,7 @@ private:
         });
         if (same != of_cells_.end()) {
             same->cells.push_back(cell);
+            same->made.after_passes = std::max(same->made.after_passes, made.after_passes);
         } else {
             of_cells_.push_back({made, Scratch<std::uint32_t>(1, cell)});
         }

@@ -22,8 +22,11 @@ Scratch<std::uint32_t> by_slot(std::span<const FoundDependency> found, std::uint
 
 } // namespace
 
-void collect(std::span<const FoundDependency> found, std::uint32_t exit_slot, Synchronised& out) {
-    const Scratch<std::uint32_t> order = by_slot(found, exit_slot);
+void collect(std::span<FoundDependency> found, const Schedule& schedule, Synchronised& out) {
+    const auto exit_slot = static_cast<std::uint32_t>(schedule.order.size());
+    Scratch<std::uint32_t> order = by_slot(found, exit_slot);
+    leave_out_covered(order, schedule, found);
+    std::erase_if(order, [&](std::uint32_t i) { return is_left_out(found[i]); });
     out.dependencies.reserve(found.size());
     out.first_of_slot.assign(exit_slot + 1, 0);
     const auto add = [&](const FoundDependency& one) {

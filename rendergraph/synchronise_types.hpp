@@ -73,12 +73,24 @@ struct FoundDependency {
     Dependency dependency = {};
     std::uint32_t slot = 0; ///< of the consumer, the number of slots for exits
     std::uint32_t release_batch = none;
-    bool only_at_release = false; ///< recorded at the end of release_batch and nowhere else
+    bool only_at_release = false;   ///< recorded at the end of release_batch and nowhere else
+    std::uint32_t after_passes = 0; ///< its producers of its own queue are among that queue's first so many passes
 };
 
+/// Takes away what other barriers of the queue, recorded between producer and consumer, order anyway: from
+/// dependencies that carry no memory, single stages; all of one where nothing of it is left, whose dst_stages are 0
+/// then. `order` are indices into `found` by slot. O(found x stages), squared within a slot.
+void leave_out_covered(std::span<const std::uint32_t> order, const Schedule& schedule,
+                       std::span<FoundDependency> found);
+
+[[nodiscard]] inline bool is_left_out(const FoundDependency& found) {
+    return found.dependency.src_stages == 0 && found.dependency.dst_stages == 0 &&
+           found.dependency.old_layout == found.dependency.new_layout && !found.dependency.transfers_ownership;
+}
+
 /// Fills the dependencies of `out`, whose `releases` has a list for each batch, in the order in which a frame records
-/// them. Exits have the slot `exit_slot`. O(found).
-void collect(std::span<const FoundDependency> found, std::uint32_t exit_slot, Synchronised& out);
+/// them. Exits have as slot the number of slots. O(found) and leave_out_covered.
+void collect(std::span<FoundDependency> found, const Schedule& schedule, Synchronised& out);
 
 [[nodiscard]] inline bool same_but_range(const Dependency& a, const Dependency& b) {
     return a.producer == b.producer && a.consumer == b.consumer && a.hazard == b.hazard &&

@@ -59,8 +59,16 @@ void Replay::check_import_end(Object& object, const ImportDesc& import) {
     }
     for (const Atom& atom : object.atoms) {
         const Event& write = atom.last_write;
-        const bool ours = atom.written && write.pass != none;
-        if (ours && import.final_stages != 0 && !visible_to_host(write, import)) {
+        const bool taken_to =
+            atom.owner == import.final_family || (atom.released && atom.released_to == import.final_family);
+        if (object.exclusive && import.final_family != VK_QUEUE_FAMILY_IGNORED &&
+            atom.owner != VK_QUEUE_FAMILY_IGNORED && !taken_to) {
+            say(write.pass, " is not left to the family that was agreed");
+        }
+        // Ours, or what the host wrote before and the frame passed on to its own readers.
+        const bool passed_on = write.written != 0 && !atom.reads.empty();
+        if (atom.written && (write.pass != none || passed_on) && import.final_stages != 0 &&
+            !visible_to_host(write, import)) {
             say(write.pass, " is not visible to the host's next access when the frame ends");
         }
         const bool host_writes = (import.final_access & (writing | VK_ACCESS_2_MEMORY_WRITE_BIT)) != 0;

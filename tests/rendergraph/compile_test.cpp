@@ -173,6 +173,31 @@ TEST(Compile, WhatCameBackThroughAnotherQueueNeedsNoBarrier) {
     }
 }
 
+TEST(Compile, AWriteAfterReadsNeedsNoBarrierWhereAnotherOrdersThem) {
+    for (const bool in_fragment : {false, true}) {
+        GraphBuilder graph;
+        Buffer a = graph.import_buffer("a", {.size_bytes = 64}, {.has_final = true});
+        Buffer b = graph.import_buffer("b", {.size_bytes = 64}, {.has_final = true});
+        const Buffer a_before = a;
+        // The reader reads in the stage that the barrier of 'b' names, or in another.
+        graph.add_pass("read", in_fragment ? PassKind::graphics : PassKind::compute)
+            .reads(a_before, in_fragment ? Access::storage_fragment : Access::storage_compute)
+            .has_side_effect("test");
+        graph.add_pass("make", PassKind::compute).writes(b, Access::storage_compute);
+        graph.add_pass("overwrite", PassKind::compute)
+            .modifies(b, Access::storage_compute)
+            .writes(a, Access::storage_compute);
+        const DeclaredGraph declared = graph.finish();
+        const Plan plan = compiled(declared.desc, one_queue());
+        const PlannedPass& last = plan.passes[place_of(declared.desc, plan, "overwrite")];
+        EXPECT_EQ(last.barrier_count, in_fragment ? 2U : 1U) << to_text(declared.desc, plan);
+        for (std::uint32_t i = last.first_barrier; i < last.first_barrier + last.barrier_count; ++i) {
+            const Dependency& d = plan.dependencies[i];
+            EXPECT_EQ(d.dst_access != 0, d.resource == b.resource) << "there is nothing to see after reads";
+        }
+    }
+}
+
 TEST(Compile, ReadsAreMergedIntoOneDependency) {
     GraphBuilder graph;
     Image image = graph.create_image("image", color_image());

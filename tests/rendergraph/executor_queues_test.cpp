@@ -156,8 +156,10 @@ TEST_F(Queues, MemoryThatChangesHandsIsMadeAvailableByAMemoryBarrier) {
                                        {.has_final = true, .final_stages = VK_PIPELINE_STAGE_2_HOST_BIT});
     builder.add_pass("fill", PassKind::transfer).writes(chain[0], Access::transfer_destination);
     for (std::size_t i = 1; i < chain.size(); ++i) {
+        Buffer unread = builder.create_buffer("unread " + std::to_string(i), {.size_bytes = 256});
         builder.add_pass("step " + std::to_string(i), PassKind::compute)
             .reads(chain[i - 1], Access::storage_compute)
+            .writes(unread, Access::storage_compute)
             .writes(chain[i], Access::storage_compute);
     }
     builder.add_pass("copy", PassKind::transfer)
@@ -172,10 +174,17 @@ TEST_F(Queues, MemoryThatChangesHandsIsMadeAvailableByAMemoryBarrier) {
     }
     ASSERT_GT(shared_with_content, 0U);
     std::size_t recorded = 0;
+    std::size_t recorded_order = 0;
     for (const auto& barriers : device_.submits.at(0).commands.memory_barriers) {
-        recorded += barriers.size();
+        for (const VkMemoryBarrier2& barrier : barriers) {
+            ++(barrier.srcAccessMask != 0 ? recorded : recorded_order);
+        }
     }
     EXPECT_EQ(recorded, shared_with_content + 1) << "one for each, and the one that opens the frame";
+    const auto orders_others = std::count_if(plan.dependencies.begin(), plan.dependencies.end(),
+                                             [](const Dependency& d) { return d.orders_for != none; });
+    EXPECT_GT(orders_others, 0);
+    EXPECT_EQ(recorded_order, static_cast<std::size_t>(orders_others)) << "what other resources rely on";
 }
 
 TEST_F(Queues, HostSemaphoresAreWaitedForAndSignalledWithTheFinalLayoutBefore) {

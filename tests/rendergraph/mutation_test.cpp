@@ -6,6 +6,7 @@
 #include "rendergraph/plan_text.hpp"
 #include "rendergraph/verify.hpp"
 #include "tests/rendergraph/any_frame.hpp"
+#include "tests/rendergraph/folded.hpp"
 #include "tests/rendergraph/frames.hpp"
 #include "tests/rendergraph/mutations.hpp"
 #include "tests/rendergraph/reach_oracle.hpp"
@@ -15,10 +16,20 @@ namespace {
 
 struct Tally {
     std::uint32_t places = 0;
-    std::uint32_t caught = 0;
+    std::uint32_t caught = 0;        ///< in the plan as it is
+    std::uint32_t caught_folded = 0; ///< only where one queue does the work of several, without their semaphores
     std::array<std::uint32_t, harmless_count> harmless = {};
 };
 using Tallies = std::array<Tally, fault_count>;
+
+/// Other faults than those of dependencies have nothing to do with how queues fold.
+bool is_seen_folded(const GraphDesc& graph, const Mutant& mutant) {
+    if (mutant.dependency == none) {
+        return false;
+    }
+    const FoldedFrame one = folded(graph, mutant.plan);
+    return !verify(one.graph, one.plan).empty();
+}
 
 void mutate(const GraphDesc& graph, const Plan& plan, const std::string& name, Tallies& tallies) {
     for (std::size_t f = 0; f < fault_count; ++f) {
@@ -27,6 +38,10 @@ void mutate(const GraphDesc& graph, const Plan& plan, const std::string& name, T
             ++tally.places;
             if (!verify(graph, mutant.plan).empty()) {
                 ++tally.caught;
+                continue;
+            }
+            if (is_seen_folded(graph, mutant)) {
+                ++tally.caught_folded;
                 continue;
             }
             const std::optional<Harmless> reason = why_harmless(graph, plan, mutant);
@@ -43,8 +58,8 @@ void mutate(const GraphDesc& graph, const Plan& plan, const std::string& name, T
 void print(const Tallies& tallies) {
     for (std::size_t f = 0; f < fault_count; ++f) {
         const Tally& tally = tallies[f];
-        std::printf("%-27s places %7u  caught %7u", std::string(name_of(static_cast<Fault>(f))).c_str(), tally.places,
-                    tally.caught);
+        std::printf("%-27s places %7u  caught %7u  folded %6u", std::string(name_of(static_cast<Fault>(f))).c_str(),
+                    tally.places, tally.caught, tally.caught_folded);
         for (std::size_t h = 0; h < harmless_count; ++h) {
             if (tally.harmless[h] != 0) {
                 std::printf("; %s %u", std::string(name_of(static_cast<Harmless>(h))).c_str(), tally.harmless[h]);
@@ -73,6 +88,30 @@ TEST(Mutations, AreSeenOrHarmlessForAReason) {
         EXPECT_GT(tallies[f].places, 20U) << name_of(static_cast<Fault>(f));
         EXPECT_GT(tallies[f].caught * 4, tallies[f].places) << name_of(static_cast<Fault>(f));
     }
+    // Plans have next to no barrier that nothing needs: all that is left are of imports.
+    const Tally& dropped = tallies[static_cast<std::size_t>(Fault::drop_barrier)];
+    std::uint32_t superfluous = 0;
+    for (std::size_t h = 0; h < harmless_count; ++h) {
+        superfluous += h == static_cast<std::size_t>(Harmless::never_recorded) ? 0 : dropped.harmless[h];
+    }
+    EXPECT_LE(superfluous * 200, dropped.places);
+}
+
+/// One queue does the work of several: the whole masks that semaphores make superfluous are needed then.
+TEST(Mutations, PlansFoldedOntoOneQueueAreProved) {
+    const std::uint32_t count = random_graph_count(500);
+    std::uint32_t of_several = 0;
+    for (std::uint32_t seed = 1; seed <= count; ++seed) {
+        const AnyFrame frame = any_frame(seed);
+        const auto plan = plan_of(frame);
+        ASSERT_TRUE(plan.has_value());
+        const FoldedFrame one = folded(frame.graph, *plan);
+        const std::vector<Violation> found = verify(one.graph, one.plan);
+        ASSERT_TRUE(found.empty()) << "seed " << seed << ": " << found.front().message << "\n"
+                                   << to_text(frame.graph, *plan) << to_text(one.graph, one.plan);
+        of_several += frame.topology.queues.size() > 1 ? 1 : 0;
+    }
+    EXPECT_GT(of_several, count / 4);
 }
 
 TEST(Mutations, TheOtherOracleAgreesOnTruePlans) {
