@@ -32,6 +32,7 @@ std::string_view name_of(DiagnosticCode code) {
     case DiagnosticCode::bad_description: return "bad description";
     case DiagnosticCode::no_queue: return "no queue";
     case DiagnosticCode::unknown_injection_point: return "unknown injection point";
+    case DiagnosticCode::plan_not_repeated: return "plan not repeated";
     case DiagnosticCode::bad_file: return "file";
     }
     return "";

@@ -27,6 +27,7 @@ enum class DiagnosticCode : std::uint8_t {
     bad_description,         ///< zero extent, unknown format, more mips than the extent has, zero bytes
     no_queue,                ///< the topology has no queue for the pass
     unknown_injection_point, ///< the host declared no point of that name
+    plan_not_repeated,       ///< a shadow compile gave another plan; a mistake of this library, of none in the graph
     bad_file,                ///< a file that describes a frame, its costs or its plan says something impossible
 };
 

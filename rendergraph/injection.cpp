@@ -43,14 +43,14 @@ void InjectionPoints::begin_frame(GraphBuilder& graph) const {
     graph.set_injection_points(names_);
 }
 
-void InjectionPoints::visit(std::string_view point, GraphBuilder& graph, Blackboard& blackboard,
-                            const Declare& own) const {
+void InjectionPoints::visit(std::string_view point, GraphBuilder& graph, Blackboard& blackboard, const Declare& own,
+                            std::source_location where) const {
     const std::optional<std::uint32_t> index = index_of(names_, point);
     if (!index) {
         graph.report({.code = DiagnosticCode::unknown_injection_point,
                       .message = "The host visits '" + std::string(point) + "', which it did not list",
-                      .where = std::source_location::current(),
-                      .other_where = std::source_location::current()});
+                      .where = where,
+                      .other_where = where});
         return;
     }
     graph.begin_injection_point(*index);

@@ -30,7 +30,8 @@ public:
 
     /// Runs what is registered at `point`, then `own`, the host's own passes there (priority 0 among the rest is
     /// obtained by registering them instead).
-    void visit(std::string_view point, GraphBuilder& graph, Blackboard& blackboard, const Declare& own = {}) const;
+    void visit(std::string_view point, GraphBuilder& graph, Blackboard& blackboard, const Declare& own = {},
+               std::source_location where = std::source_location::current()) const;
 
     [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
 

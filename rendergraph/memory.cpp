@@ -141,6 +141,32 @@ void find_owners_before(std::span<const Block> blocks, const Packing& packing, M
     }
 }
 
+/// Why each has its bytes with others, or alone. O(blocks + owners).
+void give_reasons(std::span<const Block> blocks, const Conflicts& conflicts, bool aliasing, Memory& memory) {
+    Scratch<std::uint32_t> in_heap(memory.heaps.size(), 0);
+    for (const Block& block : blocks) {
+        ++in_heap[block.heap];
+    }
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        Placement& placement = memory.placements[blocks[i].resource];
+        placement.could_share = in_heap[blocks[i].heap] - 1 - static_cast<std::uint32_t>(conflicts.of(i).size());
+        placement.reason = !aliasing                    ? MemoryReason::sharing_off
+                           : placement.could_share == 0 ? MemoryReason::never_idle
+                                                        : MemoryReason::better_apart;
+    }
+    for (const Block& block : blocks) { // by first slot: who takes over comes after those that it takes over from
+        const std::span<const std::uint32_t> before = memory.taken_over_by(block.resource);
+        for (const std::uint32_t other : before) {
+            MemoryReason& reason = memory.placements[other].reason;
+            reason = reason == MemoryReason::takes_over ? reason : MemoryReason::is_taken_over;
+        }
+        if (!before.empty()) {
+            memory.placements[block.resource].shares_with = before.front();
+            memory.placements[block.resource].reason = MemoryReason::takes_over;
+        }
+    }
+}
+
 /// The most bytes that are live at one pass: between two uses of each, as the partial order has it.
 VkDeviceSize largest_live_set(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives) {
     const std::uint32_t queues = schedule.queue_count;
@@ -185,6 +211,8 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         const std::uint32_t end = schedule.first_use[resource + 1];
         const bool paired = desc.has_history || desc.history_of != none;
         if ((first == end && !paired) || desc.lifetime == ResourceLifetime::imported) {
+            placement.reason =
+                desc.lifetime == ResourceLifetime::imported ? MemoryReason::host_owns : MemoryReason::not_created;
             continue;
         }
         placement.size_bytes = requirements.of_resource[resource].size_bytes;
@@ -201,6 +229,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             }
             std::sort(placement.families.begin(), placement.families.end());
             placement.kind = PlacementKind::history;
+            placement.reason = MemoryReason::outlives_frame;
         } else {
             placement.kind = PlacementKind::heap;
             const MemoryRequirement& need = requirements.of_resource[resource];
@@ -260,11 +289,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         memory.heaps[heap].size_bytes = packing.heap_bytes[heap];
     }
     find_owners_before(blocks, packing, memory);
-    for (const Block& block : blocks) {
-        if (const auto before = memory.taken_over_by(block.resource); !before.empty()) {
-            memory.placements[block.resource].shares_with = before.front();
-        }
-    }
+    give_reasons(blocks, conflicts, options.aliasing, memory);
     return memory;
 }
 

@@ -85,6 +85,17 @@ enum class DecisionReason : std::uint8_t {
     overlap_pays,
     forced, ///< passes were asked onto other queues, and moving more does not gain enough
 };
+/// Why a resource has its bytes with others, or alone.
+enum class MemoryReason : std::uint8_t {
+    not_created,    ///< culled
+    host_owns,      ///< imported
+    outlives_frame, ///< a history and its resource: two copies that swap each frame
+    takes_over,     ///< bytes of resources whose uses all come before; they may be taken over in their turn
+    is_taken_over,  ///< by resources whose uses all come after
+    never_idle,     ///< refused: no other transient of its memory is sure to be idle while it is in use
+    better_apart,   ///< refused: others could have its bytes, but in the lowest placement found they have others
+    sharing_off,    ///< CompileOptions::aliasing
+};
 enum class VariantReason : std::uint8_t {
     shortest_frame,
     kept_by_hysteresis, ///< the previous plan's form; no other gains more than the threshold
@@ -207,7 +218,9 @@ struct Placement {
     VkBufferUsageFlags buffer_usage = 0;
     bool concurrent = false;             ///< shared by several queue families at once
     std::vector<std::uint32_t> families; ///< history: queue families that use either copy, ascending
-    std::uint32_t shares_with = none;    ///< a resource whose bytes it takes over, `none` if it has them alone
+    MemoryReason reason = MemoryReason::not_created;
+    std::uint32_t shares_with = none; ///< a resource whose bytes it takes over, `none` if it has them alone
+    std::uint32_t could_share = 0;    ///< transients of its heap that are never in use while it is
     VkImageLayout resting_layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< history: of both copies between frames
 };
 struct Heap {

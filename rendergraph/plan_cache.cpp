@@ -39,8 +39,15 @@ tl::expected<const Plan*, Diagnostics> PlanCache::compile(const GraphDesc& graph
         return tl::unexpected(std::move(plan.error()));
     }
     if (unchanged) {
-        shadow_difference_ = first_difference(graph, plan_, *plan);
-        return &plan_;
+        const std::string difference = first_difference(graph, plan_, *plan);
+        if (difference.empty()) {
+            return &plan_;
+        }
+        return tl::unexpected(
+            Diagnostics{{.code = DiagnosticCode::plan_not_repeated,
+                         .message = "The frame is unchanged, but compiling it gives another plan than "
+                                    "the one that was kept: they differ " +
+                                    difference + "; change no plan that the cache returned"}});
     }
     before_ = std::exchange(plan_, std::move(*plan));
     hash_ = hash;

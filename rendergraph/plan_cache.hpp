@@ -18,7 +18,8 @@ namespace tyndall::rg {
 /// Keeps the last plan and returns it again while nothing that decides it has changed.
 class PlanCache {
 public:
-    /// With `shadow_compile`, a debug option, every hit is compiled all the same and compared.
+    /// With `shadow_compile`, a debug option, every hit is compiled all the same and compared: a plan that compiling
+    /// would not have given is returned as a diagnostic in its place.
     explicit PlanCache(bool shadow_compile = false) : shadow_compile_(shadow_compile) {}
 
     /// As rg::compile, with the plan before as `previous`. The plan stays valid until the next call that compiles, and
@@ -34,9 +35,6 @@ public:
 
     /// How many calls made a new plan.
     [[nodiscard]] std::uint64_t compiled() const { return compiled_; }
-    /// What shadow compiles found: a plan returned that compiling would not have given. It is a mistake of this
-    /// library, of none in the graph, and so no diagnostic. Empty where all agreed.
-    [[nodiscard]] const std::string& shadow_difference() const { return shadow_difference_; }
 
 private:
     bool shadow_compile_;
@@ -44,7 +42,6 @@ private:
     PlanHash hash_; ///< of the inputs of plan_
     Plan plan_;
     Plan before_; ///< what plan_ was compiled from, which a shadow compile needs again
-    std::string shadow_difference_;
 };
 
 } // namespace tyndall::rg

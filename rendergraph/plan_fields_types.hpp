@@ -52,6 +52,9 @@ inline constexpr std::array<std::string_view, 9> hazard_words = {
     "read_after_write", "write_after_read", "write_after_write", "layout_change", "aliased_memory",
     "import_entry",     "import_exit",      "frame_entry",       "history_rest"};
 inline constexpr std::array<std::string_view, 3> placement_words = {"unplaced", "heap", "history"};
+inline constexpr std::array<std::string_view, 8> memory_reason_words = {
+    "not_created",   "host_owns",  "outlives_frame", "takes_over",
+    "is_taken_over", "never_idle", "better_apart",   "sharing_off"};
 inline constexpr std::array<VulkanName, 3> load_names = {{{VK_ATTACHMENT_LOAD_OP_LOAD, "load"},
                                                           {VK_ATTACHMENT_LOAD_OP_CLEAR, "clear"},
                                                           {VK_ATTACHMENT_LOAD_OP_DONT_CARE, "dont care"}}};
@@ -61,6 +64,7 @@ inline constexpr std::array<VulkanName, 3> store_names = {{{VK_ATTACHMENT_STORE_
 
 static_assert(static_cast<std::size_t>(QueueReason::earliest_here) + 1 == queue_reason_words.size());
 static_assert(static_cast<std::size_t>(DecisionReason::forced) + 1 == decision_words.size());
+static_assert(static_cast<std::size_t>(MemoryReason::sharing_off) + 1 == memory_reason_words.size());
 static_assert(static_cast<std::size_t>(Hazard::history_rest) + 1 == hazard_words.size());
 
 // ---- the fields of every struct ----------------------------------------------------------------------------------
@@ -168,7 +172,9 @@ void fields(V& v, Placement& p) {
     v.mask("buffer_usage", p.buffer_usage, buffer_usage_names());
     v.value("concurrent", p.concurrent);
     v.values("families", p.families);
+    v.word("reason", p.reason, memory_reason_words);
     v.index_or_none("shares_with", p.shares_with, Table::resources);
+    v.value("could_share", p.could_share);
     v.name("resting_layout", p.resting_layout, layout_names());
 }
 template <typename V>

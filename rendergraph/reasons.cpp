@@ -73,6 +73,17 @@ private:
     std::uint32_t consumer_;
 };
 
+std::string with_whom(const GraphDesc& graph, const Plan& plan, const PlanOrder& order, std::uint32_t resource) {
+    std::string after;
+    std::string until;
+    for (const std::uint32_t other : order.sharers(plan, resource)) {
+        std::string& list = order.resource_before(other, resource) ? after : until;
+        list += (list.empty() ? "" : ", ") + quoted(graph.resources[other].name);
+    }
+    return "shares its bytes: every use of it comes" + (after.empty() ? "" : " after those of " + after) +
+           (after.empty() || until.empty() ? "" : " and") + (until.empty() ? "" : " before those of " + until);
+}
+
 } // namespace
 
 PlanOrder::PlanOrder(const GraphDesc& graph, const Plan& plan) : users_(graph.resources.size()) {
@@ -146,41 +157,30 @@ std::string why_wait(const GraphDesc& graph, const Plan& plan, const PlanOrder& 
 
 std::string why_memory(const GraphDesc& graph, const Plan& plan, const PlanOrder& order, std::uint32_t resource) {
     const Placement& placement = plan.placements[resource];
-    if (graph.resources[resource].lifetime == ResourceLifetime::imported) {
-        return "the host owns it";
-    }
-    if (graph.resources[resource].lifetime == ResourceLifetime::history || placement.kind == PlacementKind::history) {
+    switch (placement.reason) {
+    case MemoryReason::not_created: return "not created";
+    case MemoryReason::host_owns: return "the host owns it";
+    case MemoryReason::outlives_frame:
         return "one of two copies that swap each frame, since its content outlives the frame";
-    }
-    if (placement.kind == PlacementKind::unplaced) {
-        return "not created";
-    }
-    const std::vector<std::uint32_t> sharers = order.sharers(plan, resource);
-    if (!sharers.empty()) {
-        std::string after;
-        std::string until;
-        for (const std::uint32_t other : sharers) {
-            std::string& list = order.resource_before(other, resource) ? after : until;
-            list += (list.empty() ? "" : ", ") + quoted(graph.resources[other].name);
-        }
-        return "shares its bytes: every use of it comes" + (after.empty() ? "" : " after those of " + after) +
-               (after.empty() || until.empty() ? "" : " and") + (until.empty() ? "" : " before those of " + until);
-    }
-    std::uint32_t could_share = 0;
-    std::uint32_t candidate = none;
-    for (std::uint32_t other = 0; other < plan.placements.size(); ++other) {
-        const bool same_heap =
-            plan.placements[other].kind == PlacementKind::heap && plan.placements[other].heap == placement.heap;
-        if (other != resource && same_heap &&
-            (order.resource_before(other, resource) || order.resource_before(resource, other))) {
-            candidate = could_share++ == 0 ? other : candidate;
-        }
-    }
-    if (could_share == 0) {
+    case MemoryReason::never_idle:
         return "alone: no other transient of its kind of memory is sure to be idle while it is in use";
+    case MemoryReason::sharing_off: return "alone: sharing memory is switched off";
+    case MemoryReason::takes_over:
+    case MemoryReason::is_taken_over: return with_whom(graph, plan, order, resource);
+    case MemoryReason::better_apart: break;
     }
-    return "alone: " + quoted(graph.resources[candidate].name) +
-           (could_share == 1 ? "" : " and " + std::to_string(could_share - 1) + " more") +
+    std::uint32_t candidate = 0;
+    const auto could_share = [&](std::uint32_t other) {
+        const Placement& its = plan.placements[other];
+        return other != resource && its.kind == PlacementKind::heap && its.heap == placement.heap &&
+               (order.resource_before(other, resource) || order.resource_before(resource, other));
+    };
+    while (candidate < plan.placements.size() && !could_share(candidate)) {
+        ++candidate;
+    }
+    const std::string who = candidate < plan.placements.size() ? quoted(graph.resources[candidate].name) : "another";
+    return "alone: " + who +
+           (placement.could_share == 1 ? "" : " and " + std::to_string(placement.could_share - 1) + " more") +
            " could have its bytes at another time, but in the placement that was chosen have others";
 }
 

@@ -146,7 +146,8 @@ Expected<rg::Frame> load_frame(const ScheduleArguments& arguments) {
         }
         frame->costs = costs->costs;
         // The durations are no longer those that the frame speaks of.
-        frame->about += (frame->about.empty() ? "" : ". ") + std::string("Here with other durations: ") + costs->about;
+        const char* const separator = frame->about.empty() ? "" : frame->about.ends_with('.') ? " " : ". ";
+        frame->about += separator + std::string("Here with other durations: ") + costs->about;
         for (const std::string& name : costs->without_pass) {
             std::fprintf(stderr, "note: the costs of '%s' are not used, the frame has no such pass\n", name.c_str());
         }

@@ -1,5 +1,11 @@
 // What a user is told: the text of each kind of mistake, and where both sides of it were declared.
+#include <array>
+#include <fstream>
+#include <sstream>
+
 #include "rendergraph/injection.hpp"
+#include "rendergraph/json.hpp"
+#include "rendergraph/plan_cache.hpp"
 #include "tests/rendergraph/frames.hpp"
 
 namespace tyndall::rg::test {
@@ -261,6 +267,100 @@ TEST(Diagnostics, TooManyMips) {
     graph.add_pass("fill", PassKind::compute).writes(image, Access::storage_compute).has_side_effect("test");
     expect_one(mistakes(graph), DiagnosticCode::bad_description, "Resource 'image' has 6 mips, but its extent allows 5",
                made, made);
+}
+
+TEST(Diagnostics, NoGraphicsQueue) {
+    GraphBuilder graph;
+    const DeclaredGraph declared = graph.finish();
+    const auto plan = compile(declared.desc, {{{QueueKind::compute, 1, can_compute}}}, {});
+    ASSERT_FALSE(plan.has_value());
+    ASSERT_EQ(plan.error().size(), 1U) << to_text(plan.error());
+    EXPECT_EQ(plan.error()[0].code, DiagnosticCode::no_queue);
+    EXPECT_EQ(plan.error()[0].message, "The queue topology must begin with a graphics queue");
+}
+
+TEST(Diagnostics, UnknownInjectionPoint) {
+    InjectionPoints points({"after_opaque", "post"});
+    const unsigned added = __LINE__ + 1;
+    const std::optional<Diagnostic> refused = points.add("after_opaqe", 0, [](GraphBuilder&, Blackboard&) {});
+    ASSERT_TRUE(refused.has_value());
+    expect_one({*refused}, DiagnosticCode::unknown_injection_point,
+               "The host has no injection point 'after_opaqe'; it offers after_opaque, post", added, added);
+    GraphBuilder graph;
+    Blackboard blackboard;
+    points.begin_frame(graph);
+    const unsigned visited = __LINE__ + 1;
+    points.visit("pre", graph, blackboard);
+    expect_one(mistakes(graph), DiagnosticCode::unknown_injection_point, "The host visits 'pre', which it did not list",
+               visited, visited);
+}
+
+TEST(Diagnostics, PlanNotRepeated) {
+    GraphBuilder graph;
+    Buffer out = graph.import_buffer("out", {.size_bytes = 16}, {.has_final = true});
+    graph.add_pass("fill", PassKind::compute).writes(out, Access::storage_compute);
+    const DeclaredGraph declared = graph.finish();
+    const MemoryRequirements memory = estimate_memory(declared.desc);
+    PlanCache cache(true);
+    const auto plan = cache.compile(declared.desc, {}, memory);
+    ASSERT_TRUE(plan.has_value());
+    const_cast<Plan*>(*plan)->passes.front().keep_reason = KeepReason::side_effect; // as no one should
+    const auto again = cache.compile(declared.desc, {}, memory);
+    ASSERT_FALSE(again.has_value());
+    ASSERT_EQ(again.error().size(), 1U);
+    EXPECT_EQ(again.error()[0].code, DiagnosticCode::plan_not_repeated);
+    const std::string& message = again.error()[0].message;
+    EXPECT_TRUE(message.starts_with("The frame is unchanged, but compiling it gives another plan than the one that was "
+                                    "kept: they differ at character "))
+        << message;
+    EXPECT_NE(message.find("side_effect"), std::string::npos) << message;
+    EXPECT_NE(message.find("writes_import"), std::string::npos) << message;
+    EXPECT_TRUE(message.ends_with("; change no plan that the cache returned")) << message;
+}
+
+TEST(Diagnostics, BadFile) {
+    const auto frame = frame_from_json(R"({"passes": [{"name": "blur", "kind": "compute", "accesses":
+                                           [{"reads": "image", "as": "sampled"}]}]})");
+    ASSERT_FALSE(frame.has_value());
+    ASSERT_EQ(frame.error().size(), 2U) << to_text(frame.error());
+    for (const Diagnostic& mistake : frame.error()) {
+        EXPECT_EQ(mistake.code, DiagnosticCode::bad_file);
+        EXPECT_EQ(mistake.pass, "blur");
+    }
+    EXPECT_EQ(frame.error()[0].message, "");
+    EXPECT_EQ(frame.error()[1].message, "");
+}
+
+/// Whoever adds a kind of mistake adds a test of its text to this file.
+TEST(Diagnostics, EachKindHasATestHere) {
+    constexpr std::array names = {"foreign_handle",
+                                  "read_of_unwritten",
+                                  "two_writers",
+                                  "host_too_early",
+                                  "cycle",
+                                  "access_not_possible",
+                                  "queue_cannot",
+                                  "attachment_mismatch",
+                                  "range_outside",
+                                  "import_incomplete",
+                                  "duplicate_name",
+                                  "empty_pass",
+                                  "conflicting_access",
+                                  "history_misuse",
+                                  "bad_description",
+                                  "no_queue",
+                                  "unknown_injection_point",
+                                  "plan_not_repeated",
+                                  "bad_file"};
+    static_assert(names.size() == static_cast<std::size_t>(DiagnosticCode::bad_file) + 1);
+    std::stringstream text;
+    text << std::ifstream(__FILE__).rdbuf();
+    for (const char* name : names) {
+        const std::string expected = std::string("DiagnosticCode::") + name + ",";
+        const std::string compared = std::string("DiagnosticCode::") + name + ");";
+        EXPECT_TRUE(text.str().find(expected) != std::string::npos || text.str().find(compared) != std::string::npos)
+            << name;
+    }
 }
 
 TEST(Diagnostics, AllMistakesAreReportedTogether) {

@@ -30,6 +30,31 @@ void expect_reason(const std::string& reason) {
     EXPECT_FALSE(reason.ends_with(": ") || reason.ends_with(" ")) << reason;
 }
 
+/// The recorded reason is the one that the plan itself shows.
+void expect_memory_reason(const GraphDesc& graph, const Plan& plan, const PlanOrder& order, std::uint32_t r) {
+    const Placement& placement = plan.placements[r];
+    const std::string& name = graph.resources[r].name;
+    EXPECT_EQ(placement.reason == MemoryReason::host_owns, graph.resources[r].import != none) << name;
+    EXPECT_EQ(placement.reason == MemoryReason::outlives_frame, placement.kind == PlacementKind::history) << name;
+    EXPECT_EQ(placement.reason == MemoryReason::takes_over, placement.shares_with != none) << name;
+    if (placement.kind != PlacementKind::heap) {
+        return;
+    }
+    std::uint32_t could_share = 0;
+    for (std::uint32_t other = 0; other < plan.placements.size(); ++other) {
+        const Placement& its = plan.placements[other];
+        const bool same_heap = its.kind == PlacementKind::heap && its.heap == placement.heap;
+        could_share += other != r && same_heap && (order.resource_before(other, r) || order.resource_before(r, other));
+    }
+    EXPECT_EQ(placement.could_share, could_share) << name;
+    const bool shares = !order.sharers(plan, r).empty();
+    EXPECT_EQ(placement.reason == MemoryReason::takes_over || placement.reason == MemoryReason::is_taken_over, shares)
+        << name;
+    EXPECT_EQ(placement.reason == MemoryReason::never_idle,
+              could_share == 0 && placement.reason != MemoryReason::sharing_off)
+        << name;
+}
+
 void expect_all_reasons(const GraphDesc& graph, const Plan& plan) {
     const PlanOrder order(graph, plan);
     std::set<std::uint32_t> passes;
@@ -69,6 +94,7 @@ void expect_all_reasons(const GraphDesc& graph, const Plan& plan) {
             EXPECT_NE(reason.find(" after those of "), std::string::npos) << reason;
             EXPECT_NE(reason.find("'" + graph.resources[plan.placements[r].shares_with].name + "'"), std::string::npos);
         }
+        expect_memory_reason(graph, plan, order, r);
         for (const std::uint32_t other : order.sharers(plan, r)) {
             EXPECT_TRUE(order.resource_before(r, other) || order.resource_before(other, r))
                 << graph.resources[r].name << " and " << graph.resources[other].name << " share bytes at once";
@@ -145,6 +171,24 @@ TEST(Reasons, WhereEachOptimisationIsSwitchedOff) {
           CompileOptions{.reordering = false}, CompileOptions{.full_barriers = true}}) {
         expect_all_reasons(fog.desc, compiled(fog.desc, two_queues(), options));
     }
+}
+
+TEST(Reasons, OfRefusedSharing) {
+    const DeclaredGraph fog = fog_frame();
+    const auto reasons_of = [&](const CompileOptions& options) {
+        std::set<MemoryReason> reasons;
+        const Plan plan = compiled(fog.desc, one_queue(), options);
+        for (const Placement& placement : plan.placements) {
+            reasons.insert(placement.reason);
+        }
+        return reasons;
+    };
+    using enum MemoryReason;
+    EXPECT_EQ(reasons_of({}),
+              (std::set{not_created, host_owns, outlives_frame, takes_over, is_taken_over, never_idle, better_apart}));
+    EXPECT_EQ(reasons_of({.aliasing = false}), (std::set{not_created, host_owns, outlives_frame, sharing_off}));
+    const Plan plan = compiled(fog.desc, one_queue(), {.aliasing = false});
+    EXPECT_EQ(why_memory(fog.desc, plan, PlanOrder(fog.desc, plan), 1), "alone: sharing memory is switched off");
 }
 
 TEST(Reasons, TheDecisionInOneLine) {
