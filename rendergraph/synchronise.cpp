@@ -114,29 +114,6 @@ private:
         }
     }
 
-    /// The group that `uses` begins with.
-    static Group first_group(Uses uses) {
-        const Use& first = *uses.front();
-        std::size_t count = 1;
-        while (count < uses.size() && !first.writes && !uses[count]->writes &&
-               uses[count]->scope.layout == first.scope.layout) {
-            ++count;
-        }
-        return {uses.first(count), first.writes, first.writes && !first.reads, first.scope.layout};
-    }
-
-    /// The group that `uses` ends with.
-    static Uses last_group(Uses uses) {
-        std::size_t count = std::min<std::size_t>(uses.size(), 1);
-        const auto joins = [&](const Use& use) {
-            return !use.writes && !uses.back()->writes && use.scope.layout == uses.back()->scope.layout;
-        };
-        while (count < uses.size() && joins(*uses[uses.size() - count - 1])) {
-            ++count;
-        }
-        return uses.last(count);
-    }
-
     void visit_cell(std::uint32_t resource, std::uint32_t cell, Uses uses, const Before& entry) {
         Before before = entry;
         const bool untouched = uses.empty();
@@ -329,19 +306,6 @@ private:
         }
     }
 
-    static Hazard hazard_of(const Before& before, const Group& group) {
-        if (!before.in_frame) {
-            return before.entry;
-        }
-        const bool after_write = before.uses.front()->writes;
-        if (group.writes) {
-            return !after_write     ? Hazard::write_after_read
-                   : group.discards ? Hazard::write_after_write
-                                    : Hazard::read_after_write;
-        }
-        return after_write ? Hazard::read_after_write : Hazard::layout_change;
-    }
-
     /// EXCLUSIVE resources whose content crosses families are released by the last use and acquired by the next.
     void set_ownership(Dependency& d, FoundDependency& made, std::uint32_t resource, const Before& before,
                        std::uint32_t family) const {
@@ -370,20 +334,6 @@ private:
             return;
         }
         record(made, cell);
-    }
-
-    /// What made the content visible to the readers made it visible to such an access as well: the masks of a group are
-    /// one barrier's.
-    static bool sees_as_much(const Before& before, std::uint32_t queue, VkPipelineStageFlags2 stages,
-                             VkAccessFlags2 access) {
-        for (const Use* use : before.uses) {
-            if (use->writes || use->queue != queue) {
-                return false;
-            }
-            stages &= ~use->scope.stages;
-            access &= ~use->scope.access;
-        }
-        return stages == 0 && access == 0;
     }
 
     void leave(std::uint32_t resource, std::uint32_t cell, const Before& before) {

@@ -2,6 +2,8 @@
 // Internal.
 #pragma once
 
+#include <algorithm>
+
 #include "rendergraph/stages.hpp"
 
 namespace tyndall::rg::stages {
@@ -35,6 +37,29 @@ struct Group {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 
+/// The group that `uses` begins with.
+[[nodiscard]] inline Group first_group(Uses uses) {
+    const Use& first = *uses.front();
+    std::size_t count = 1;
+    while (count < uses.size() && !first.writes && !uses[count]->writes &&
+           uses[count]->scope.layout == first.scope.layout) {
+        ++count;
+    }
+    return {uses.first(count), first.writes, first.writes && !first.reads, first.scope.layout};
+}
+
+/// The group that `uses` ends with.
+[[nodiscard]] inline Uses last_group(Uses uses) {
+    std::size_t count = std::min<std::size_t>(uses.size(), 1);
+    const auto joins = [&](const Use& use) {
+        return !use.writes && !uses.back()->writes && use.scope.layout == uses.back()->scope.layout;
+    };
+    while (count < uses.size() && joins(*uses[uses.size() - count - 1])) {
+        ++count;
+    }
+    return uses.last(count);
+}
+
 /// What came before a group: other uses, or the state on the way in.
 struct Before {
     Uses uses;
@@ -56,6 +81,33 @@ struct Before {
     before.layout = group.layout;
     before.in_frame = true;
     return before;
+}
+
+[[nodiscard]] inline Hazard hazard_of(const Before& before, const Group& group) {
+    if (!before.in_frame) {
+        return before.entry;
+    }
+    const bool after_write = before.uses.front()->writes;
+    if (group.writes) {
+        return !after_write     ? Hazard::write_after_read
+               : group.discards ? Hazard::write_after_write
+                                : Hazard::read_after_write;
+    }
+    return after_write ? Hazard::read_after_write : Hazard::layout_change;
+}
+
+/// What made the content visible to the readers made it visible to such an access as well: the masks of a group are
+/// one barrier's.
+[[nodiscard]] inline bool sees_as_much(const Before& before, std::uint32_t queue, VkPipelineStageFlags2 stages,
+                                       VkAccessFlags2 access) {
+    for (const Use* use : before.uses) {
+        if (use->writes || use->queue != queue) {
+            return false;
+        }
+        stages &= ~use->scope.stages;
+        access &= ~use->scope.access;
+    }
+    return stages == 0 && access == 0;
 }
 
 /// The host wants all of an import in its final state, also the parts that no pass touched.

@@ -327,8 +327,8 @@ TEST(Diagnostics, BadFile) {
         EXPECT_EQ(mistake.code, DiagnosticCode::bad_file);
         EXPECT_EQ(mistake.pass, "blur");
     }
-    EXPECT_EQ(frame.error()[0].message, "");
-    EXPECT_EQ(frame.error()[1].message, "");
+    EXPECT_EQ(frame.error()[0].message, "Pass 'blur', access 0, names the unknown resource 'image'");
+    EXPECT_EQ(frame.error()[1].message, "Pass 'blur', access 0, has the unknown as 'sampled'");
 }
 
 /// Whoever adds a kind of mistake adds a test of its text to this file.

@@ -61,26 +61,6 @@ TEST_F(Schedule, EverySampleFrameIsProvedOnEveryTopology) {
     }
 }
 
-/// A frame without what each run measures anew.
-nlohmann::json without_durations(const std::filesystem::path& file) {
-    nlohmann::json frame = nlohmann::json::parse(read_all(file));
-    frame.erase("about");
-    for (nlohmann::json& pass : frame["passes"]) {
-        pass.erase("duration_ns");
-        pass.erase("deviation_ns");
-    }
-    return frame;
-}
-
-TEST_F(Schedule, HallIsTheFrameThatTheHallIsRenderedBy) {
-    const std::filesystem::path exported = folder_ / "hall.json";
-    const ToolRun run =
-        run_tool({"render", TYNDALL_HALL, "--size", "1280x720", "--frames", "2", "--export-frame", exported.string()});
-    ASSERT_EQ(run.exit_code, 0) << run.errors;
-    EXPECT_EQ(without_durations(frame_file("hall")), without_durations(exported))
-        << "write it anew: tyndall render hall.gltf --size 1280x720 --frames 6 --export-frame samples/frames/hall.json";
-}
-
 TEST_F(Schedule, DeferredFrameHasTheMemoryOfItsKind) {
     const ToolRun run = schedule({frame_file("deferred"), "--queues", "graphics"});
     expect_in(run.output, "transient memory 129.91 MiB, at least 129.91 MiB are needed, met; without sharing "
