@@ -146,8 +146,31 @@ bool has_kind(const json& value, Kind kind) {
     return false;
 }
 
-/// Checks one object or array and all below it, and removes "extras" on the way. `path` names it as a JSON pointer
-/// does.
+/// "extras" belong to whoever wrote the file: only what gltf_punctual.cpp reads of a light is kept, and that unless it
+/// is a list or an object.
+void reduce_extras(json& value, const std::string& path) {
+    const auto extras = value.find("extras");
+    if (extras == value.end()) {
+        return;
+    }
+    json kept = json::object();
+    if (path.starts_with("/extensions/KHR_lights_punctual/lights/") && extras->is_object()) {
+        for (const char* key : {"shadow", "shadow_near_m"}) {
+            const auto found = extras->find(key);
+            if (found != extras->end() && found->is_primitive()) {
+                kept[key] = *found;
+            }
+        }
+    }
+    if (kept.empty()) {
+        value.erase(extras);
+    } else {
+        *extras = std::move(kept);
+    }
+}
+
+/// Checks one object or array and all below it, and removes "extras" on the way but for those of lights. `path` names
+/// it as a JSON pointer does.
 std::optional<Error> check(json& value, const std::string& path, int depth, bool in_extension) {
     if (depth > depth_limit) {
         return Error{"its JSON is nested more than " + std::to_string(depth_limit) + " deep"};
@@ -163,7 +186,7 @@ std::optional<Error> check(json& value, const std::string& path, int depth, bool
     if (!value.is_object()) {
         return std::nullopt;
     }
-    value.erase("extras");
+    reduce_extras(value, path);
     for (auto& [key, child] : value.items()) {
         std::string child_path = path;
         child_path.append("/").append(key);

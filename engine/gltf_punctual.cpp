@@ -14,6 +14,9 @@ namespace {
 constexpr double intensity_limit = 1e12;
 /// Least width of the soft edge of a spot's cone: keeps 1 / (cos inner - cos outer) finite.
 constexpr double least_cone_edge_rad = 1e-3;
+/// Between them the quotient of near distance and distance keeps its digits.
+constexpr double least_shadow_near_m = 1e-3;
+constexpr double most_shadow_near_m = 1e3;
 
 glm::dvec3 unit_or(const glm::dvec3& vector, const glm::dvec3& fallback) {
     const double length = glm::length(vector);
@@ -67,6 +70,27 @@ std::optional<LightType> to_light_type(const std::string& name) {
         return LightType::point;
     }
     return name == "spot" ? std::optional(LightType::spot) : std::nullopt;
+}
+
+/// "shadow": whether it casts one; "shadow_near_m": what is nearer than this casts none.
+void read_light_extras(const tinygltf::Value& extras, const std::string& label, Light& light,
+                       std::vector<std::string>& notes) {
+    if (const tinygltf::Value* shadow = find_member(&extras, "shadow")) {
+        if (shadow->IsBool()) {
+            light.casts_shadow = shadow->Get<bool>();
+        } else {
+            add_note(notes, label + " has an extra 'shadow' that is neither true nor false, which is left out.");
+        }
+    }
+    if (const tinygltf::Value* near = find_member(&extras, "shadow_near_m")) {
+        const double near_m = number_or(near, 0.0);
+        if (near_m >= least_shadow_near_m && near_m <= most_shadow_near_m) {
+            light.shadow_near_m = near_m;
+        } else {
+            add_note(notes,
+                     label + " has an extra 'shadow_near_m' that is not between 0.001 and 1000, which is left out.");
+        }
+    }
 }
 
 } // namespace
@@ -150,6 +174,7 @@ tl::expected<std::optional<Light>, Error> read_gltf_light(const GltfDocument& do
         light.outer_cone_rad = static_cast<float>(outer);
         light.inner_cone_rad = static_cast<float>(inner);
     }
+    read_light_extras(source.extras, label, light, notes);
     return light;
 }
 

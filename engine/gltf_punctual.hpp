@@ -21,7 +21,8 @@ namespace tyndall::engine {
                                                            const glm::dmat4& world_from_node);
 
 /// The light that KHR_lights_punctual puts on node `index`, if any. Intensity, cone and range outside of their domains
-/// are brought back into them with a note. Errors: no such light, an unknown type.
+/// are brought back into them with a note. Of the light's "extras" are read: "shadow", whether it casts one, and
+/// "shadow_near_m", within which nothing does. Errors: no such light, an unknown type.
 [[nodiscard]] tl::expected<std::optional<Light>, Error> read_gltf_light(const GltfDocument& document, std::size_t node,
                                                                         const glm::dmat4& world_from_node,
                                                                         std::vector<std::string>& notes);

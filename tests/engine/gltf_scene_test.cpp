@@ -169,6 +169,25 @@ TEST(GltfScene, LightsOfAllTypesAreReadInTheirUnits) {
     EXPECT_FALSE(has_note(scene, "no light"));
 }
 
+TEST(GltfScene, ExtrasOfLightsSayWhichCastShadows) {
+    const Scene scene = loaded(
+        with_lights({{{"type", "point"}, {"extras", {{"shadow", true}, {"shadow_near_m", 0.4}}}},
+                     {{"type", "spot"}, {"spot", json::object()}, {"extras", {{"shadow", false}, {"mood", "grim"}}}},
+                     {{"type", "spot"}, {"spot", json::object()}},
+                     {{"type", "spot"}, {"spot", json::object()}, {"extras", {{"shadow", 1}, {"shadow_near_m", 0}}}},
+                     {{"type", "spot"}, {"spot", json::object()}, {"extras", {{"shadow", "yes"}}}}}));
+    EXPECT_EQ(scene.lights.at(0).casts_shadow, true);
+    EXPECT_EQ(scene.lights.at(0).shadow_near_m, 0.4);
+    EXPECT_EQ(scene.lights.at(1).casts_shadow, false);
+    for (std::size_t i = 2; i < 5; ++i) {
+        EXPECT_FALSE(scene.lights.at(i).casts_shadow);
+        EXPECT_FALSE(scene.lights.at(i).shadow_near_m);
+    }
+    EXPECT_TRUE(has_note(scene, "Light 3 has an extra 'shadow' that is neither true nor false, which is left out."));
+    EXPECT_TRUE(has_note(scene, "Light 4 has an extra 'shadow' that is neither"));
+    EXPECT_TRUE(has_note(scene, "Light 3 has an extra 'shadow_near_m' that is not between 0.001 and 1000"));
+}
+
 TEST(GltfScene, ImpossibleLightsAreBroughtBackWithANote) {
     const Scene scene =
         loaded(with_lights({{{"type", "point"}, {"intensity", -1}},
