@@ -53,8 +53,9 @@ float local_visibility(LocalShadow shadow, sampler2DArray maps, vec3 position) {
 
 // The part, 0 to 1, that a point of a surface sees: four texels, weighted bilinearly. `normal`: geometric, unit, on the
 // light's side. Each texel's caster is compared with the surface's own plane at that texel, not with the point, so that
-// a slope shadows nothing of itself and the bias need not grow with it: half a texel, for normals of curved surfaces
-// and the map's rounding.
+// a slope shadows nothing of itself and the bias need not grow with it: half a texel along the normal, for normals of
+// curved surfaces and the map's rounding. Where walls meet, a texel beyond the corner shows the other wall, before this
+// one's plane: what lies less than half a texel before the point itself casts no shadow on it.
 float local_surface_visibility(LocalShadow shadow, sampler2DArray maps, vec3 position, vec3 normal) {
     vec3 p = local_shadow_space(shadow, position);
     float side = local_shadow_side(shadow, p);
@@ -72,7 +73,7 @@ float local_surface_visibility(LocalShadow shadow, sampler2DArray maps, vec3 pos
     float middle = per_plane * (dot(n.xy, (low + 0.5) * shadow.texel.z - 0.5) / shadow.lens.x + n.z);
     vec4 plane = middle + vec4(0.0, slope.x, slope.x, 0.0) + vec4(slope.y, slope.y, 0.0, 0.0);
     // As textureGather: (0, 1), (1, 1), (1, 0), (0, 0). Where the plane is seen edge on it stays near the point.
-    plane = clamp(plane, 0.9 * place.z, 1.1 * place.z);
+    plane = clamp(plane, place.z, 1.1 * place.z) * (1.0 + 0.5 * shadow.texel.x);
     vec4 casters = textureGather(maps, vec3((low + 1.0) * shadow.texel.z, shadow.lens.z + side), 0);
     vec4 lit = vec4(lessThanEqual(casters, plane));
     vec2 rows = mix(lit.wx, lit.zy, f.x);
