@@ -23,6 +23,9 @@ void ForwardInputs::find(rg::Blackboard& blackboard, bool transparent) {
         clusters = on<LightClusters>(blackboard);
         local_shadows = on<LocalShadows>(blackboard);
     }
+    if (const Air* found = blackboard.find<Air>()) {
+        air = LightMarch{found->volumes, found->noise_octaves};
+    }
     if (transparent) {
         scattering = on<ScatteringVolumeImages>(blackboard);
     }

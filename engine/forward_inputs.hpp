@@ -19,7 +19,7 @@ struct ForwardInputs {
     std::optional<LocalShadows> local_shadows;
     std::optional<LightClusters> clusters;
     std::optional<ScatteringVolumeImages> scattering; ///< for transparents only
-    bool air = false;                                 ///< weakens light on its way
+    std::optional<LightMarch> air;                    ///< weakens light on its way
     VkSampler linear_sampler = VK_NULL_HANDLE;
     VkSampler nearest_sampler = VK_NULL_HANDLE;
 

@@ -11,6 +11,7 @@
 #include <vulkan/vulkan_core.h>
 
 #include "rendergraph/executor.hpp"
+#include "shaders/common/light_medium.h"
 #include "shaders/common/lights.h"
 #include "shaders/common/sun_shadow.h"
 
@@ -68,15 +69,12 @@ struct SceneImages {
     rg::Image depth; ///< D32, reverse-Z
 };
 
-/// What fills the space between lights and surfaces, and weakens light on its way: homogeneous fog and fog that falls
-/// off with height, extinction in 1/m. Nothing where all is 0.
+/// Optional, put by a feature at `frame_begin`: what fills the space between lights and surfaces, and weakens light on
+/// its way (shaders/common/light_march.glsl).
 struct Air {
-    float homogeneous_per_m = 0.0F;
-    float height_per_m = 0.0F; ///< at and below the base
-    float falloff_per_m = 0.0F;
-    float base_height_m = 0.0F; ///< world
-
-    [[nodiscard]] bool is_clear() const { return homogeneous_per_m == 0.0F && height_per_m == 0.0F; }
+    gpu::LightMedium medium{}; ///< in the render space of the frame's view
+    bool volumes = false;      ///< the constants that the march is specialised to
+    std::uint32_t noise_octaves = 0;
 };
 
 /// The finished picture, from the point `frame_end` on: R8G8B8A8_UNORM holding sRGB-encoded values.

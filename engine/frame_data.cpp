@@ -45,8 +45,7 @@ gpu::FrameParameters make_frame_parameters(const FrameView& view, const LightRol
     const DirectionalLight sun = lights.sun.value_or(DirectionalLight{});
     out.sun_direction = with_w(glm::vec3(sun.direction), 0.0F);
     out.sun_illuminance = with_w(sun.illuminance_lux, 0.0F);
-    out.air = glm::vec4(look.air.homogeneous_per_m, look.air.height_per_m, look.air.falloff_per_m,
-                        view.origin_m.y - static_cast<double>(look.air.base_height_m));
+    out.medium = look.medium;
     for (std::size_t i = 0; i < lights.fills.size(); ++i) {
         out.fill_direction[i] = with_w(glm::vec3(lights.fills[i].direction), 0.0F);
         out.fill_illuminance[i] = with_w(lights.fills[i].illuminance_lux, 0.0F);

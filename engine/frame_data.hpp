@@ -23,7 +23,7 @@ struct FrameLook {
     Background background;
     float largest_radiance = 0.0F; ///< what the colour format can hold
     std::uint32_t local_light_count = 0;
-    Air air;
+    gpu::LightMedium medium{}; ///< that light comes through
 };
 [[nodiscard]] gpu::FrameParameters make_frame_parameters(const FrameView& view, const LightRoles& lights,
                                                          const FrameLook& look);

@@ -90,17 +90,10 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
     frame_.view.frame_index = request.frame_index;
     frame_.view.frame_slot = request.frame_slot;
     frame_.view.cut = request.cut;
-    frame_.air = !request.air.is_clear();
     frame_.lists = visible_instances(scene_, frame_.view);
     frame_.view.visible_depth_m = frame_.lists.depth_m;
 
     const auto light_count = static_cast<std::uint32_t>(lights_.local.size());
-    const FrameLook look{.ambient = settings_.ambient.value_or(default_ambient(lights_.sun)),
-                         .background = settings_.background.value_or(default_background(lights_.sun)),
-                         .largest_radiance = largest_radiance(settings_.color_format),
-                         .local_light_count = light_count,
-                         .air = request.air};
-    frame_data_.write_parameters(request.frame_slot, make_frame_parameters(frame_.view, lights_, look));
     plan_local_shadows();
     frame_data_.write_places(request.frame_slot, frame_.view.origin_m, scene_.instances, lights_.local,
                              settings_.lights, frame_.local_shadows.lights);
@@ -128,6 +121,18 @@ void Renderer::begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, 
     blackboard.put(lights);
 }
 
+/// After the features have begun the frame: they know what light comes through.
+void Renderer::write_parameters(rg::Blackboard& blackboard) {
+    FrameLook look{.ambient = settings_.ambient.value_or(default_ambient(lights_.sun)),
+                   .background = settings_.background.value_or(default_background(lights_.sun)),
+                   .largest_radiance = largest_radiance(settings_.color_format),
+                   .local_light_count = static_cast<std::uint32_t>(lights_.local.size())};
+    if (const Air* air = blackboard.find<Air>()) {
+        look.medium = air->medium;
+    }
+    frame_data_.write_parameters(frame_.view.frame_slot, make_frame_parameters(frame_.view, lights_, look));
+}
+
 tl::expected<void, Error> Renderer::declare(rg::GraphBuilder& graph, rg::Blackboard& blackboard,
                                             const rg::InjectionPoints& points, const FrameRequest& request,
                                             const Declare& at_end) {
@@ -142,6 +147,7 @@ tl::expected<void, Error> Renderer::declare(rg::GraphBuilder& graph, rg::Blackbo
         };
     };
     points.visit("frame_begin", graph, blackboard, run(&Renderer::declare_particles));
+    write_parameters(blackboard);
     run (&Renderer::declare_shadows)(graph, blackboard);
     run (&Renderer::declare_local_shadows)(graph, blackboard);
     points.visit("after_shadow_maps", graph, blackboard);

@@ -46,7 +46,6 @@ struct FrameRequest {
     std::uint64_t frame_index = 0;
     std::uint32_t frame_slot = 0; ///< Executor::next_slot, after wait_for_slot
     bool cut = false;             ///< first frame, or the camera jumped
-    Air air = {};                 ///< that surfaces are lit through
 };
 
 class Renderer {
@@ -120,7 +119,6 @@ private:
         rg::Buffer instances;
         std::optional<ParticleDraws> particles;
         std::optional<Error> error; ///< of a callback
-        bool air = false;           ///< weakens light on its way to surfaces
     };
 
     Renderer(const Device& device, Scene scene, RendererSettings settings);
@@ -128,6 +126,7 @@ private:
 
     // renderer.cpp: the frame's set-up.
     void begin_frame(rg::GraphBuilder& graph, rg::Blackboard& blackboard, const FrameRequest& request);
+    void write_parameters(rg::Blackboard& blackboard);
     [[nodiscard]] rg::Buffer import(rg::GraphBuilder& graph, const char* name, const Buffer& buffer);
     void omit(std::string what, std::string why) { omissions_.push_back({std::move(what), std::move(why)}); }
 

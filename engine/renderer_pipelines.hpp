@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <optional>
 
 #include <tl/expected.hpp>
 
@@ -16,14 +17,22 @@ inline constexpr VkFormat picture_format = VK_FORMAT_R8G8B8A8_UNORM;
 
 enum class LocalLights : std::uint8_t { none, all, of_cluster };
 
+/// What shaders/common/light_march.glsl is specialised to.
+struct LightMarch {
+    bool volumes = false;
+    std::uint32_t octaves = 0;
+
+    friend auto operator<=>(const LightMarch&, const LightMarch&) = default;
+};
+
 /// What a forward shader binds and does, as in shaders/engine/forward.frag.
 struct ForwardVariant {
     bool sun_shadow = false;
     LocalLights lights = LocalLights::none;
     bool local_shadow = false; ///< some of the lights, so there are some, cast shadows
     bool transparent = false;
-    bool scattering = false; ///< with `transparent` only
-    bool air = false;        ///< weakens light on its way
+    bool scattering = false;       ///< with `transparent` only
+    std::optional<LightMarch> air; ///< weakens light on its way
 
     friend auto operator<=>(const ForwardVariant&, const ForwardVariant&) = default;
 };

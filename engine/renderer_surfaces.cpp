@@ -71,7 +71,6 @@ tl::expected<void, Error> Renderer::declare_depth(rg::GraphBuilder& graph, rg::B
 tl::expected<void, Error> Renderer::declare_opaque(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
     ForwardInputs inputs{.parameters = frame_.parameters,
                          .instances = frame_.instances,
-                         .air = frame_.air,
                          .linear_sampler = linear_sampler_.get(),
                          .nearest_sampler = nearest_sampler_.get()};
     inputs.find(blackboard, false);

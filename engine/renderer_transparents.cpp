@@ -40,7 +40,6 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
     }
     ForwardInputs inputs{.parameters = frame_.parameters,
                          .instances = frame_.instances,
-                         .air = frame_.air,
                          .linear_sampler = linear_sampler_.get(),
                          .nearest_sampler = nearest_sampler_.get()};
     inputs.find(blackboard, true);

@@ -112,6 +112,29 @@ double sun_change(const std::optional<Sun>& sun, const std::optional<Sun>& befor
     return change + turned_rad * (steepness + (sun->casts_shadows ? shadow_edge_per_rad : 0.0));
 }
 
+/// What of light's way no closed form knows: noise, and the volumes that are not what they were, each by no more than
+/// it takes of light that passes it.
+double march_change(const FrameInputs& frame, const FrameMemory& before) {
+    const LightMarch march = light_march(frame.medium, frame.settings);
+    if (march != before.march || (march.octaves > 0 && frame.medium.noise != before.medium.noise)) {
+        return 1.0;
+    }
+    const auto part_taken = [](const LocalVolume& volume) {
+        const bool knows_its_own = volume.blend == VolumeBlend::add || volume.blend == VolumeBlend::max;
+        const double length_m = 2.0 * glm::length(glm::dvec3(volume.half_size_m));
+        return knows_its_own ? -std::expm1(-length_m * static_cast<double>(volume.extinction_per_m)) : 1.0;
+    };
+    const std::vector<LocalVolume>& is = frame.medium.volumes;
+    const std::vector<LocalVolume>& was = before.medium.volumes;
+    double change = 0.0;
+    for (std::size_t i = 0; march.volumes && i < std::max(is.size(), was.size()); ++i) {
+        if (i >= is.size() || i >= was.size() || is[i] != was[i]) {
+            change += (i < is.size() ? part_taken(is[i]) : 0.0) + (i < was.size() ? part_taken(was[i]) : 0.0);
+        }
+    }
+    return change;
+}
+
 } // namespace
 
 std::vector<LightChange> light_changes(const FrameInputs& frame, const FrameMemory& before) {
@@ -149,6 +172,7 @@ float change_everywhere(const FrameInputs& frame, const FrameMemory& before) {
     change += sun_change(frame.sun, before.sun, steepness(phase));
     const glm::vec4 air = air_of(frame);
     change += relative_difference(glm::vec3(air), glm::vec3(before.air)) + (air.w != before.air.w ? 1.0 : 0.0);
+    change += march_change(frame, before);
     return static_cast<float>(std::min(change, 1.0));
 }
 

@@ -5,6 +5,7 @@
 
 #include "features/volumetrics/dispatch.hpp"
 #include "features/volumetrics/feature_state.hpp"
+#include "features/volumetrics/light_path.hpp"
 #include "shaders/common/lights.h"
 
 namespace tyndall::volumetrics {
@@ -185,7 +186,8 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     const GroupShape group = row_group(grid.width);
     // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
     const PhaseLobes phase = phase_of(inputs.medium);
-    const std::array<std::uint32_t, 12> constants{
+    const LightMarch march = light_march(inputs.medium, inputs.settings);
+    const std::array<std::uint32_t, 14> constants{
         inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
         variant.sun_shadow ? graph.describe(frame->shadow_map)->layers : 0,
         is_perspective(inputs.camera),
@@ -198,6 +200,8 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         frame->depth_curve,
         variant.history ? light_change_kind(frame->parameters) : 0U,
         weakens_light(inputs.medium, inputs.settings),
+        march.volumes,
+        march.octaves,
     };
     const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
     if (!program) {

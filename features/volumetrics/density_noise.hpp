@@ -36,6 +36,8 @@ struct DensityNoise {
     float detail = 0.4F;             ///< of perlin_worley: what the detail takes at most, [0, 0.95]
     float detail_scale_m = 1.0F;     ///< size of a cell of the detail, [1e-4, 1e6]
     glm::vec3 detail_wind_m_s{0.0F}; ///< velocity of the detail, each in [-1e3, 1e3]
+
+    friend bool operator==(const DensityNoise&, const DensityNoise&) = default;
 };
 
 /// Made of baked volumes.

@@ -302,10 +302,16 @@ tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& g
         state.omit("shadows of local lights",
                    frame.lights == LocalLights::none ? "there is no local light" : "no local light casts one");
     }
+    const LightPath path = frame.inputs.settings.light_path;
     if (!weakens_light(frame.inputs.medium, frame.inputs.settings)) {
-        state.omit("weakening of light on its way", frame.inputs.settings.light_path == LightPath::none
-                                                        ? "it is switched off"
+        state.omit("weakening of light on its way", path == LightPath::none ? "it is switched off"
+                                                    : path == LightPath::march
+                                                        ? "no medium takes light"
                                                         : "there is neither homogeneous nor height fog");
+    } else if (!light_march(frame.inputs.medium, frame.inputs.settings).is_needed()) {
+        state.omit("a march along light's way", path == LightPath::march
+                                                    ? "closed forms hold without local volumes and noise of octaves"
+                                                    : "it is switched off");
     }
     if (!frame.inputs.settings.temporal.enabled) {
         state.omit("temporal reprojection", "it is switched off");
@@ -325,6 +331,23 @@ void Feature::declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResource
 
 Feature::State* Feature::find_view(std::uint32_t view) const {
     return view < views_.size() ? views_[view].get() : nullptr;
+}
+
+std::optional<LightWay> Feature::light_way(std::uint32_t view) const {
+    const State* const found = find_view(view);
+    if (found == nullptr || !found->frame ||
+        !weakens_light(found->frame->inputs.medium, found->frame->inputs.settings)) {
+        return std::nullopt;
+    }
+    const gpu::VolumetricParameters& u = found->frame->parameters;
+    LightWay way{.march = light_march(found->frame->inputs.medium, found->frame->inputs.settings),
+                 .medium = {.air = u.air,
+                            .noise_origin = u.noise_origin,
+                            .noise_cells = u.noise_cells,
+                            .density_scale = u.density_scale,
+                            .march = u.march}};
+    std::copy(std::begin(u.volumes), std::end(u.volumes), std::begin(way.medium.volumes));
+    return way;
 }
 
 const std::optional<ClusterResources>& Feature::clusters(std::uint32_t view) const {

@@ -21,6 +21,7 @@
 #include <tl/expected.hpp>
 
 #include "features/volumetrics/frame_inputs.hpp"
+#include "features/volumetrics/light_path.hpp"
 #include "rendergraph/device_table.hpp"
 #include "rendergraph/executor.hpp"
 #include "rendergraph/graph.hpp"
@@ -111,6 +112,8 @@ public:
     /// Fog on opaque.
     void declare_after_opaque(rg::GraphBuilder& graph, const OpaqueResources& resources, std::uint32_t view = 0);
 
+    /// What weakens the light of the host's surfaces; empty where nothing does. After begin_frame.
+    [[nodiscard]] std::optional<LightWay> light_way(std::uint32_t view = 0) const;
     /// After declare_frame_begin.
     [[nodiscard]] const std::optional<ClusterResources>& clusters(std::uint32_t view = 0) const;
     /// These two after declare_after_shadow_maps.

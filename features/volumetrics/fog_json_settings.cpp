@@ -38,7 +38,9 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
                {"exponential", Integrator::exponential},
                {"exponential_quadratic", Integrator::exponential_quadratic}});
     root.read("error_estimate", settings.error_estimate);
-    root.read("light_path", settings.light_path, {{"none", LightPath::none}, {"closed_form", LightPath::closed_form}});
+    root.read("light_path", settings.light_path,
+              {{"none", LightPath::none}, {"closed_form", LightPath::closed_form}, {"march", LightPath::march}});
+    root.read("light_path_steps", settings.light_path_steps);
     subsection(root, "visibility", error, [&](Section& s) {
         s.read("method", settings.visibility.method,
                {{"one_tap", SunVisibility::one_tap},

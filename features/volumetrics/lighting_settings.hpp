@@ -22,10 +22,11 @@ enum class SunVisibility : std::uint8_t {
     lit_fraction, ///< the part of the slice that is lit, from every texel that it crosses
 };
 
-/// What the medium takes from light on its way to a froxel or a surface (shaders/common/light_attenuation.glsl).
+/// What the medium takes from light on its way to a froxel or a surface (shaders/common/light_march.glsl).
 enum class LightPath : std::uint8_t {
     none,        ///< nothing: all light arrives
     closed_form, ///< homogeneous and height fog, exactly; not their noise, and not the local volumes
+    march,       ///< these and, by a march along the way, local volumes and noise
 };
 
 struct VisibilitySettings {

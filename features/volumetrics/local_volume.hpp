@@ -33,6 +33,8 @@ struct LocalVolume {
     float factor = 1.0F;                        ///< of multiply, [0, 1e3]
     glm::vec3 albedo{1.0F};                     ///< each in [0, 1]; of add and max
     glm::vec3 emission_per_m{0.0F};             ///< cd/m^3, each in [0, 1e9]; of add and max
+
+    friend bool operator==(const LocalVolume&, const LocalVolume&) = default;
 };
 
 } // namespace tyndall::volumetrics

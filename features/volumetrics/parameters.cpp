@@ -186,6 +186,11 @@ gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameter
     return far;
 }
 
+/// Of the march toward the sun: each step is so much longer than the one before, and no longer than so many noise cells
+/// in the mean.
+constexpr float light_step_growth = 1.3F;
+constexpr float light_step_cells = 1.0F;
+
 /// The volumes that are not empty; their number.
 std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float emission_scale,
                             gpu::VolumetricParameters& u) {
@@ -345,6 +350,7 @@ FrameMemory memory_of(const FrameInputs& frame, const gpu::VolumetricParameters&
             .sun = frame.sun,
             .lights = frame.lights,
             .air = air_of(frame),
+            .march = light_march(frame.medium, frame.settings),
             .volume = parameters.volume,
             .storage = frame.settings.storage,
             .frames_since_cut = parameters.frame.x};
@@ -426,6 +432,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.depth = depth_coefficients(frame.camera.clip_from_view);
     u.frame = glm::uvec4(frames_since_cut, frame.lights.size(), write_volumes(frame, density_scale, emission_scale, u),
                          write_changes(frame, before, u));
+    u.march = glm::vec4(u.frame.z, light_march(medium, frame.settings).steps, light_step_growth, light_step_cells);
     return u;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "features/volumetrics/frame_inputs.hpp"
+#include "features/volumetrics/light_path.hpp"
 #include "shaders/volumetrics/interop.h"
 
 namespace tyndall::volumetrics {
@@ -20,6 +21,7 @@ struct FrameMemory {
     std::optional<Sun> sun;
     std::vector<gpu::GpuLight> lights; ///< in the render space of `camera`
     glm::vec4 air{0.0F};               ///< of air_of
+    LightMarch march;
     gpu::ScatteringVolume volume;
     StorageFormat storage = StorageFormat::fp16;
     std::uint32_t frames_since_cut = 0;

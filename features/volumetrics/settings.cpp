@@ -37,14 +37,10 @@ tl::expected<void, Error> validate(const Settings& settings) {
         check.in_range("shadow.esm_exponent", exponent, 1.0, 1000.0);
     }
     check.in_range("shadow.esm_size", settings.shadow.esm_size, 16, 2048);
+    check.in_range("light_path_steps", settings.light_path_steps, 1, 64);
     check.in_range("visibility.taps", settings.visibility.taps, 1, 64);
     check.in_range("temporal.new_frame_weight", settings.temporal.new_frame_weight, 0.001F, 1.0);
     return check.result();
-}
-
-bool weakens_light(const Medium& medium, const Settings& settings) {
-    return settings.light_path == LightPath::closed_form &&
-           (medium.homogeneous.extinction_per_m > 0.0F || medium.height.extinction_per_m > 0.0F);
 }
 
 } // namespace tyndall::volumetrics

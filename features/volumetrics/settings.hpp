@@ -35,13 +35,11 @@ struct Settings {
     Integrator integrator = Integrator::exponential;
     VisibilitySettings visibility;
     LightPath light_path = LightPath::closed_form;
-    bool error_estimate = false; ///< the integrator's own, beside the image (StageResources::error_estimate)
-    bool clusters = true;        ///< false: every froxel visits every light
-    bool async_compute = false;  ///< the compute passes ask for async compute; else the scheduler decides
+    std::uint32_t light_path_steps = 8; ///< of march along each way, [1, 64]
+    bool error_estimate = false;        ///< the integrator's own, beside the image (StageResources::error_estimate)
+    bool clusters = true;               ///< false: every froxel visits every light
+    bool async_compute = false;         ///< the compute passes ask for async compute; else the scheduler decides
 };
-
-/// Whether light arrives weakened, so that a host's surfaces must be lit through the same air: see LightPath.
-[[nodiscard]] bool weakens_light(const Medium& medium, const Settings& settings);
 
 /// The first value outside its domain, by its key in the fog file ("grid.range_m must be ...").
 [[nodiscard]] tl::expected<void, Error> validate(const Settings& settings);

@@ -216,8 +216,7 @@ Result FrameLoop::run(const FrameWishes& wishes) {
                                        .time_s = wishes.time_s,
                                        .frame_index = frame_index_,
                                        .frame_slot = executor_->next_slot(),
-                                       .cut = wishes.cut || frame_index_ == 0,
-                                       .air = glue_ ? glue_->air() : engine::Air{}};
+                                       .cut = wishes.cut || frame_index_ == 0};
     Result declared =
         renderer_->declare(graph, blackboard, points_, request,
                            [&](rg::GraphBuilder& g, rg::Blackboard& b) { reads = declare_reads(g, b, wishes); });

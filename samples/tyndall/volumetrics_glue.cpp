@@ -55,17 +55,6 @@ void VolumetricsGlue::keep_error(const tl::expected<void, volumetrics::Error>& r
     }
 }
 
-engine::Air VolumetricsGlue::air() const {
-    const volumetrics::Medium& medium = fog_.medium;
-    if (!enabled_ || !volumetrics::weakens_light(medium, fog_.settings)) {
-        return {};
-    }
-    return {.homogeneous_per_m = medium.homogeneous.extinction_per_m,
-            .height_per_m = medium.height.extinction_per_m,
-            .falloff_per_m = medium.height.falloff_per_m,
-            .base_height_m = medium.height.base_height_m};
-}
-
 void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& blackboard) {
     error_.reset();
     const engine::FrameView& view = *blackboard.find<engine::FrameView>();
@@ -90,6 +79,9 @@ void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& black
     keep_error(feature_->begin_frame(inputs));
     if (!error_) {
         keep_error(feature_->declare_frame_begin(graph, {.lights = lights.lights}));
+    }
+    if (const std::optional<volumetrics::LightWay> way = feature_->light_way()) {
+        blackboard.put(engine::Air{way->medium, way->march.volumes, way->march.octaves});
     }
     if (feature_->clusters()) {
         blackboard.put(engine::LightClusters{feature_->clusters()->masks, feature_->clusters()->parameters});

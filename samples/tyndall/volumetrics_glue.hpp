@@ -28,7 +28,6 @@ public:
     void set_enabled(bool enabled) { enabled_ = enabled; }
     [[nodiscard]] const volumetrics::Feature& feature() const { return *feature_; }
     [[nodiscard]] const volumetrics::Fog& fog() const { return fog_; }
-    [[nodiscard]] engine::Air air() const; ///< that the fog makes for light on its way to surfaces
     /// What went wrong while the last frame was declared.
     [[nodiscard]] const std::optional<engine::Error>& error() const { return error_; }
 

@@ -7,11 +7,13 @@
 // `air`: x: extinction of homogeneous fog, 1/m; y: of height fog at and below its base, 1/m; z: its falloff, 1/m;
 // w: height of render space's origin above its base, m.
 
-// Transmittance of the straight way from a point to another, `way` metres off.
-float air_transmittance(vec4 air, vec3 point, vec3 way) {
+// Of the straight way from a point to another, `way` metres off.
+float air_optical_depth(vec4 air, vec3 point, vec3 way) {
     float height_m = air.w + point.y;
-    return exp(-length(way) * (air.x + air.y * mean_height_density(height_m, height_m + way.y, air.z)));
+    return length(way) * (air.x + air.y * mean_height_density(height_m, height_m + way.y, air.z));
 }
+
+float air_transmittance(vec4 air, vec3 point, vec3 way) { return exp(-air_optical_depth(air, point, way)); }
 
 // From outside the air, against the unit direction `travel`. Fog without end in that direction takes nothing: the
 // illuminance of a sun is what arrives through it.

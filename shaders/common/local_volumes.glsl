@@ -17,18 +17,22 @@ vec3 shape_space(GpuLocalVolume volume, vec3 p) {
                 dot(volume.row_z.xyz, p) + volume.row_z.w);
 }
 
-// The s in [0, 1] between which a + s d is inside; not in order where it passes by.
-vec2 overlap_with_box(vec3 a, vec3 d) {
+vec3 shape_direction(GpuLocalVolume volume, vec3 d) {
+    return vec3(dot(volume.row_x.xyz, d), dot(volume.row_y.xyz, d), dot(volume.row_z.xyz, d));
+}
+
+// The s in [0, end] between which a + s d is inside; not in order where it passes by.
+vec2 overlap_with_box(vec3 a, vec3 d, float end) {
     vec3 inverse = 1.0 / mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20)));
     vec3 s0 = (-1.0 - a) * inverse;
     vec3 s1 = (1.0 - a) * inverse;
     vec3 enter = min(s0, s1);
     vec3 leave = max(s0, s1);
-    return vec2(max(max(enter.x, enter.y), max(enter.z, 0.0)), min(min(leave.x, leave.y), min(leave.z, 1.0)));
+    return vec2(max(max(enter.x, enter.y), max(enter.z, 0.0)), min(min(leave.x, leave.y), min(leave.z, end)));
 }
 
 // By the point of the line that is nearest to the centre: b^2 - a c would cancel far away.
-vec2 overlap_with_ellipsoid(vec3 a, vec3 d) {
+vec2 overlap_with_ellipsoid(vec3 a, vec3 d, float end) {
     float squared = max(dot(d, d), 1e-30);
     float nearest = -dot(a, d) / squared;
     vec3 offset = a + nearest * d;
@@ -37,7 +41,11 @@ vec2 overlap_with_ellipsoid(vec3 a, vec3 d) {
         return vec2(1.0, 0.0);
     }
     float reach = sqrt(inside / squared);
-    return vec2(max(nearest - reach, 0.0), min(nearest + reach, 1.0));
+    return vec2(max(nearest - reach, 0.0), min(nearest + reach, end));
+}
+
+vec2 overlap_with_shape(GpuLocalVolume volume, vec3 a, vec3 d, float end) {
+    return volume.edge_shape_blend.y == shape_ellipsoid ? overlap_with_ellipsoid(a, d, end) : overlap_with_box(a, d, end);
 }
 
 float edge_weight(GpuLocalVolume volume, vec3 q) {
@@ -54,7 +62,7 @@ float edge_weight(GpuLocalVolume volume, vec3 q) {
 void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 medium, inout vec3 emission) {
     vec3 a = shape_space(volume, near);
     vec3 d = shape_space(volume, far) - a;
-    vec2 overlap = volume.edge_shape_blend.y == shape_ellipsoid ? overlap_with_ellipsoid(a, d) : overlap_with_box(a, d);
+    vec2 overlap = overlap_with_shape(volume, a, d, 1.0);
     float part = overlap.y - overlap.x;
     if (part <= 0.0) {
         return;

@@ -40,4 +40,17 @@ float tiled_gradient_noise(vec3 p, uint mask, uint seed) {
 // Of period 256 cells.
 float gradient_noise(vec3 p) { return tiled_gradient_noise(p, 255u, 0u); }
 
+// What density is multiplied by: the octaves of DensityNoise, features/volumetrics/density_noise.hpp, the first of this amplitude,
+// each next one's `gain` times that; p in cells. Faded where a sample stands for so many `cells` that they do not show.
+float octave_noise(vec3 p, float cells, float amplitude, float gain, uint octaves) {
+    float factor = 1.0;
+    for (uint octave = 0u; octave < octaves && cells < 1.0; ++octave) {
+        factor += amplitude * clamp(2.0 - 2.0 * cells, 0.0, 1.0) * gradient_noise(p);
+        amplitude *= gain;
+        cells *= 2.0;
+        p = 2.0 * p + vec3(17.375, 5.625, 11.125);
+    }
+    return factor;
+}
+
 #endif

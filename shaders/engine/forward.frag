@@ -11,10 +11,12 @@
 #include "engine/brdf.glsl"
 #include "engine/material.glsl"
 
-#include "common/light_attenuation.glsl"
-
 layout(set = 0, binding = 0) uniform Frame { FrameParameters frame; };
 layout(constant_id = 2) const bool air_weakens_light = false; // on its way to surfaces
+layout(constant_id = 3) const bool light_volumes = false;     // 3 and 4: see light_march.glsl
+layout(constant_id = 4) const uint light_octaves = 0u;
+#define MEDIUM frame.medium
+#include "common/light_march.glsl"
 #if SUN_SHADOW
 #include "engine/sun_visibility.glsl"
 #endif
@@ -120,7 +122,7 @@ vec3 local_light(GpuLight light, Reflection r, vec3 normal, vec3 geometric, vec3
     vec3 to_light;
     vec3 irradiance = light_irradiance_normal(light, surface_position, to_light);
     if (air_weakens_light) {
-        irradiance *= air_transmittance(frame.air, surface_position, light.position_range.xyz - surface_position);
+        irradiance *= light_transmittance(surface_position, light.position_range.xyz - surface_position);
     }
 #if LOCAL_SHADOW
     if (casts_local_shadow(light.cone)) {
@@ -204,7 +206,7 @@ vec3 lit_radiance(vec3 base, float depth_m) {
     vec3 sun_travel = frame.sun_direction.xyz;
     vec3 sun_light = directional_light(r, normal, to_eye, sun_travel, frame.sun_illuminance.rgb);
     if (air_weakens_light) {
-        sun_light *= air_transmittance_of_sun(frame.air, surface_position, sun_travel);
+        sun_light *= sun_transmittance(surface_position, sun_travel);
     }
 #if SUN_SHADOW
     if (sun_light != vec3(0.0) && dot(geometric, sun_travel) < 0.0) {

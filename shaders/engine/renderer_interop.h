@@ -3,6 +3,7 @@
 #define TYNDALL_SHADERS_ENGINE_RENDERER_INTEROP_H
 
 #include "../common/interop.h"
+#include "../common/light_medium.h"
 
 TYNDALL_INTEROP_BEGIN
 
@@ -22,7 +23,7 @@ struct FrameParameters {
     vec4 sky_ground;       // rgb
     vec4 sun_direction;    // xyz: unit, in which it travels
     vec4 sun_illuminance;  // rgb lux; 0 without a sun
-    vec4 air;              // see common/light_attenuation.glsl
+    LightMedium medium;    // that light comes through
     vec4 fill_direction[3];
     vec4 fill_illuminance[3];
 };

@@ -34,19 +34,9 @@ layout(constant_id = 9) const bool has_baked_noise = false;
 const bool has_baked_noise = false;
 #endif
 
-// The octaves of features/volumetrics/density_noise.hpp, faded where a froxel is too large to show them.
 float octave_noise_factor(vec3 render_position, float froxel_m) {
-    float cells = froxel_m * u.noise_cells.x;
-    float amplitude = u.noise_origin.w;
     vec3 p = render_position * u.noise_cells.x + u.noise_origin.xyz;
-    float factor = 1.0;
-    for (uint octave = 0u; octave < noise_octaves && cells < 1.0; ++octave) {
-        factor += amplitude * clamp(2.0 - 2.0 * cells, 0.0, 1.0) * gradient_noise(p);
-        amplitude *= u.noise_cells.y;
-        cells *= 2.0;
-        p = 2.0 * p + vec3(17.375, 5.625, 11.125);
-    }
-    return factor;
+    return octave_noise(p, froxel_m * u.noise_cells.x, u.noise_origin.w, u.noise_cells.y, noise_octaves);
 }
 
 #if TEXTURES

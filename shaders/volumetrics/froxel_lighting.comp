@@ -14,7 +14,6 @@
 layout(constant_id = 12) const bool has_depth_curve = false;
 #define DEPTH_CURVE has_depth_curve
 
-#include "common/light_attenuation.glsl"
 #include "common/lights.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
@@ -35,10 +34,14 @@ layout(constant_id = 13) const uint light_changes = 2; // 0: since the frame bef
                                                        // direction of view; 2: local lights, too
 
 layout(constant_id = 14) const bool air_weakens_light = false; // on its way to the froxel
+layout(constant_id = 15) const bool light_volumes = false;     // 15 and 16: see light_march.glsl
+layout(constant_id = 16) const uint light_octaves = 0u;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
 
+#define MEDIUM u
+#include "common/light_march.glsl"
 #include "volumetrics/phase.glsl"
 
 #if SUN_SHADOW
@@ -78,7 +81,7 @@ vec3 sun_scattering(RaySegment segment, float depth_m) {
                    segment, depth_m, visibility)
 #endif
     if (air_weakens_light) {
-        visibility *= air_transmittance_of_sun(u.air, segment.position, u.sun_direction.xyz);
+        visibility *= sun_transmittance(segment.position, u.sun_direction.xyz);
     }
     return u.sun_illuminance.rgb * (visibility * phase_function(phase_angle(u.sun_direction.xyz, segment.to_eye)));
 }

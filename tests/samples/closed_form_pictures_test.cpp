@@ -330,6 +330,85 @@ TEST_F(ClosedFormPictures, LightIsWeakenedOnItsWayToAWall) {
               1e-4);
 }
 
+/// Metres of a straight way from p along the unit direction d, `length_m` long, in a ball and in a box along the axes.
+double way_in_ball(const std::array<double, 3>& p, const std::array<double, 3>& d, double length_m) {
+    const std::array<double, 3> to = {0.3 - p[0], 1.0 - p[1], -3.0 - p[2]};
+    const double nearest = to[0] * d[0] + to[1] * d[1] + to[2] * d[2];
+    const double squared = 0.64 - (to[0] * to[0] + to[1] * to[1] + to[2] * to[2] - nearest * nearest);
+    const double half = std::sqrt(std::max(squared, 0.0));
+    return std::max(std::min(nearest + half, length_m) - std::max(nearest - half, 0.0), 0.0);
+}
+double way_in_box(const std::array<double, 3>& p, const std::array<double, 3>& d, double length_m) {
+    constexpr std::array<double, 3> low = {-1.5, -0.4, -4.5};
+    constexpr std::array<double, 3> high = {-0.5, 0.4, -3.9};
+    double enter = 0.0;
+    double leave = length_m;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double a = (low[i] - p[i]) / d[i];
+        const double b = (high[i] - p[i]) / d[i];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return std::max(leave - enter, 0.0);
+}
+
+// A ball of fog and a box of fog throw shadows on a wall, of a lamp and of the sun, each as dark as the way in it is
+// long.
+TEST_F(ClosedFormPictures, LocalVolumesThrowShadowsOnAWall) {
+    const auto fog = [&](const char* light_path) {
+        const std::filesystem::path path = folder_ / (std::string(light_path) + ".json");
+        write_text(path, R"({"medium":{"volumes":[
+            {"shape":"sphere","center_m":[0.3,1,-3],"radius_m":0.8,"extinction_per_m":0.6,"albedo":[0,0,0]},
+            {"center_m":[-1,0,-4.2],"half_size_m":[0.5,0.4,0.3],"extinction_per_m":0.9,"albedo":[0,0,0]}]},
+            "temporal":{"enabled":false},"light_path":")" +
+                             std::string(light_path) + "\"}");
+        return render({"--fp32", "--fog", path.string()});
+    };
+    add_rectangle(0.0, -5.0, 10.0, lambert({0.5, 0.5, 0.5}));
+    const GltfFile wall = file_;
+    const double tilt_rad = 0.7;
+    for (const bool sun : {false, true}) {
+        file_ = wall;
+        const json turned = {{"rotation", {-std::sin(0.5 * tilt_rad), 0.0, 0.0, std::cos(0.5 * tilt_rad)}}};
+        add_light(sun ? json{{"type", "directional"}, {"intensity", 1000.0}}
+                      : json{{"type", "point"}, {"intensity", 20.0}, {"range", 90.0}},
+                  sun ? turned : json{{"translation", {0.7, 2.0, -1.0}}});
+        const GltfFile lit = file_;
+        engine::Pixels<float> ambient;
+        if (sun) {
+            add_rectangle(0.0, 2.0, 40.0, lambert({0.5, 0.5, 0.5})); // keeps the sun away
+            ambient = fog("none");
+            file_ = lit;
+        }
+        const engine::Pixels<float> all = fog("none");
+        const engine::Pixels<float> weakened = fog("march");
+        double largest = 0.0;
+        double darkest = 1.0;
+        for (std::uint32_t y = 0; y < height; ++y) {
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const std::size_t i = (std::size_t{y} * width + x) * all.channels;
+                const double rest = ambient.values.empty() ? 0.0 : static_cast<double>(ambient.values[i]);
+                const std::array<double, 3> r = ray(x, y);
+                const std::array<double, 3> p = {5.0 * r[0], 5.0 * r[1], -5.0};
+                const std::array<double, 3> to_lamp = {0.7 - p[0], 2.0 - p[1], -1.0 - p[2]};
+                const double length_m = sun ? 1e3 : length(to_lamp);
+                const std::array<double, 3> way =
+                    sun ? std::array{1e-9, std::sin(tilt_rad), std::cos(tilt_rad)}
+                        : std::array{to_lamp[0] / length_m, to_lamp[1] / length_m, to_lamp[2] / length_m};
+                const double passes =
+                    std::exp(-0.6 * way_in_ball(p, way, length_m) - 0.9 * way_in_box(p, way, length_m));
+                const double found =
+                    (static_cast<double>(weakened.values[i]) - rest) / (static_cast<double>(all.values[i]) - rest);
+                largest = std::max(largest, std::abs(found / passes - 1.0));
+                darkest = std::min(darkest, passes);
+            }
+        }
+        std::printf("%s: down to %.2f of the light, off by %.1e\n", sun ? "sun" : "lamp", darkest, largest);
+        EXPECT_LE(darkest, 0.6);
+        EXPECT_LE(largest, 1e-3);
+    }
+}
+
 TEST_F(ClosedFormPictures, MaskCutsAtItsCutoffAndBackFacesAreCulled) {
     add_dark_light();
     add_rectangle(0.0, -8.0, 20.0, unlit({0.1, 0.2, 0.3}, 1.0, "OPAQUE"));

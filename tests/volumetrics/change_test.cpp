@@ -275,15 +275,18 @@ TEST_F(Change, OfAMediumIsThereInTheNextFrameAndCostsNoHistory) {
 }
 
 TEST_F(Change, OfWhatWeakensLightIsSeenWithinEightFrames) {
+    const LocalVolume cloud{.center_m = {0.0F, 0.0F, -12.0F}, .half_size_m = glm::vec3(3.0F), .extinction_per_m = 0.5F};
     const std::vector<std::pair<const char*, std::function<void(Scene&)>>> changes{
         {"denser", [](Scene& s) { s.inputs.medium.homogeneous.extinction_per_m = 0.2F; }},
         {"height fog", [](Scene& s) { s.inputs.medium.height.extinction_per_m = 0.1F; }},
         {"no longer", [](Scene& s) { s.inputs.settings.light_path = LightPath::none; }},
+        {"a volume in the lamp's light comes", [cloud](Scene& s) { s.inputs.medium.volumes = {cloud}; }},
     };
     for (const auto& [name, change] : changes) {
         Scene scene = lit_scene();
         scene.lights = {lamp({-4.0F, 1.0F, -14.0F}, 8.0F, 50.0F)};
         scene.inputs.medium.homogeneous.extinction_per_m = 0.1F;
+        scene.inputs.settings.light_path = LightPath::march;
         EXPECT_LE(residual(eight_frames_after(scene, change)), 0.01) << name;
     }
 }

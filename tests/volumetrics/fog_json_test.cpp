@@ -38,7 +38,7 @@ TEST(FogJson, ReadsEveryKey) {
         "shadow": {"esm_exponent": [100, 200, 300, 400]},
         "temporal": {"enabled": false, "new_frame_weight": 0.1, "jitter": false},
         "storage": "fp32", "integrator": "exponential_quadratic", "error_estimate": true,
-        "visibility": {"method": "n_taps", "taps": 7}})");
+        "visibility": {"method": "n_taps", "taps": 7}, "light_path": "march", "light_path_steps": 5})");
     ASSERT_TRUE(fog) << fog.error().message;
     const Medium& m = fog->medium;
     EXPECT_EQ(m.homogeneous.extinction_per_m, 0.02F);
@@ -71,6 +71,8 @@ TEST(FogJson, ReadsEveryKey) {
     EXPECT_TRUE(s.error_estimate);
     EXPECT_EQ(s.visibility.method, SunVisibility::n_taps);
     EXPECT_EQ(s.visibility.taps, 7U);
+    EXPECT_EQ(s.light_path, LightPath::march);
+    EXPECT_EQ(s.light_path_steps, 5U);
 }
 
 TEST(FogJson, ShapeFollowsRangeUnlessGiven) {
@@ -140,6 +142,8 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
               "grid.law must be \"curve\" where grid.curve_m is given.");
     EXPECT_EQ(refusal(R"({"shadow": {"esm_exponent": 0}})"), "shadow.esm_exponent must be between 1 and 1000, not 0.");
     EXPECT_EQ(refusal(R"({"visibility": {"taps": 0}})"), "visibility.taps must be between 1 and 64, not 0.");
+    EXPECT_EQ(refusal(R"({"light_path_steps": 65})"), "light_path_steps must be between 1 and 64, not 65.");
+    EXPECT_EQ(refusal(R"({"light_path": "marched"})"), R"(light_path must be one of "none", "closed_form", "march".)");
     EXPECT_EQ(refusal(R"({"temporal": {"new_frame_weight": 0}})"),
               "temporal.new_frame_weight must be between 0.001 and 1, not 0.");
 }
