@@ -1,6 +1,8 @@
 // Load and store operations of attachments.
 // In: uses in schedule order. Out: operations by slot. Invariant: content that a later use, the host or the next frame
 // reads is stored; nothing else is. O(uses x cells of each).
+#include <algorithm>
+
 #include "rendergraph/stages.hpp"
 
 namespace tyndall::rg::stages {
@@ -33,13 +35,15 @@ Scratch<bool> needed_later(const GraphDesc& graph, const Cells& cells, const Sch
 } // namespace
 
 Attachments choose_attachment_operations(const GraphDesc& graph, const Cells& cells, const Schedule& schedule) {
-    const Scratch<bool> needed = needed_later(graph, cells, schedule);
+    const bool any = std::any_of(graph.accesses.begin(), graph.accesses.end(),
+                                 [](const AccessDesc& access) { return is_attachment(access.access); });
+    const Scratch<bool> needed = any ? needed_later(graph, cells, schedule) : Scratch<bool>{};
     const auto stored = [&](const AccessDesc& access) {
-        bool any = false;
+        bool read_later = false;
         for (std::uint32_t i = schedule.first_use[access.resource]; i < schedule.first_use[access.resource + 1]; ++i) {
-            any = any || (schedule.uses[i].pass == access.pass && needed[i]);
+            read_later = read_later || (schedule.uses[i].pass == access.pass && needed[i]);
         }
-        return any;
+        return read_later;
     };
     Attachments out;
     out.first_of_slot.reserve(schedule.order.size() + 1);
