@@ -61,6 +61,42 @@ TEST_F(Schedule, EverySampleFrameIsProvedOnEveryTopology) {
     }
 }
 
+/// What a frame's plan follows from: not what each run measures anew, nor what the host keeps beside the frame and
+/// never writes in it, parameter blocks and kept shadow maps.
+nlohmann::json graph_of(const std::filesystem::path& file) {
+    nlohmann::json frame = nlohmann::json::parse(read_all(file));
+    frame.erase("about");
+    std::vector<nlohmann::json> read_only;
+    nlohmann::json& resources = frame["resources"];
+    for (auto resource = resources.begin(); resource != resources.end();) {
+        const bool never_written = resource->contains("import") && (*resource)["import"].value("read_only", false);
+        if (never_written) {
+            read_only.push_back((*resource)["name"]);
+        }
+        resource = never_written ? resources.erase(resource) : resource + 1;
+    }
+    for (nlohmann::json& pass : frame["passes"]) {
+        pass.erase("duration_ns");
+        pass.erase("deviation_ns");
+        nlohmann::json& accesses = pass["accesses"];
+        for (auto access = accesses.begin(); access != accesses.end();) {
+            const bool of_host = access->contains("reads") &&
+                                 std::find(read_only.begin(), read_only.end(), (*access)["reads"]) != read_only.end();
+            access = of_host ? accesses.erase(access) : access + 1;
+        }
+    }
+    return frame;
+}
+
+TEST_F(Schedule, HallIsTheFrameThatTheHallIsRenderedBy) {
+    const std::filesystem::path exported = folder_ / "hall.json";
+    const ToolRun run =
+        run_tool({"render", TYNDALL_HALL, "--size", "1280x720", "--frames", "2", "--export-frame", exported.string()});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_EQ(graph_of(frame_file("hall")), graph_of(exported))
+        << "write it anew: tyndall render hall.gltf --size 1280x720 --frames 6 --export-frame samples/frames/hall.json";
+}
+
 TEST_F(Schedule, DeferredFrameHasTheMemoryOfItsKind) {
     const ToolRun run = schedule({frame_file("deferred"), "--queues", "graphics"});
     expect_in(run.output, "transient memory 129.91 MiB, at least 129.91 MiB are needed, met; without sharing "
