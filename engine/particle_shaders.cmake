@@ -9,8 +9,10 @@ tyndall_shader(tyndall_engine engine/particle.vert NAME particle_scattering DEFI
 # What is bound differs between these, so they are variants and not specialization constants: every declared binding must
 # be written.
 foreach(sun_shadow 0 1)
-    foreach(lights 0 1)
-        tyndall_shader(tyndall_engine engine/particle.vert NAME particle_direct_s${sun_shadow}_l${lights}
-                       DEFINES SCATTERING=0 SUN_SHADOW=${sun_shadow} LIGHTS=${lights})
+    foreach(kind 00 10 11) # of local lights: LIGHTS and LOCAL_SHADOW
+        string(SUBSTRING ${kind} 0 1 lights)
+        string(SUBSTRING ${kind} 1 1 local_shadow)
+        tyndall_shader(tyndall_engine engine/particle.vert NAME particle_direct_s${sun_shadow}_l${kind}
+                       DEFINES SCATTERING=0 SUN_SHADOW=${sun_shadow} LIGHTS=${lights} LOCAL_SHADOW=${local_shadow})
     endforeach()
 endforeach()

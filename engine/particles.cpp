@@ -5,17 +5,21 @@
 #include <cstring>
 #include <utility>
 
-#include "spirv/particle_direct_s0_l0.h"
-#include "spirv/particle_direct_s0_l1.h"
-#include "spirv/particle_direct_s1_l0.h"
-#include "spirv/particle_direct_s1_l1.h"
+#include "spirv/particle_direct_s0_l00.h"
+#include "spirv/particle_direct_s0_l10.h"
+#include "spirv/particle_direct_s0_l11.h"
+#include "spirv/particle_direct_s1_l00.h"
+#include "spirv/particle_direct_s1_l10.h"
+#include "spirv/particle_direct_s1_l11.h"
 #include "spirv/particle_fragment.h"
 #include "spirv/particle_scattering.h"
 
 namespace tyndall::engine {
 namespace {
 
-constexpr std::size_t scattering_index = 4;
+/// Of the programs without a scattering volume: no local lights, lights without shadows, lights with shadows.
+constexpr std::size_t light_kinds = 3;
+constexpr std::size_t scattering_index = 2 * light_kinds;
 constexpr VkDeviceSize command_bytes = sizeof(VkDrawIndirectCommand);
 
 /// Host-written before the frame is submitted, which makes it visible.
@@ -50,8 +54,9 @@ std::vector<VkDescriptorSetLayoutBinding> bindings_of(std::size_t index) {
                                                        {2, storage_buffer, 1, vertex, nullptr},
                                                        {3, sampled_image, 1, fragment, nullptr}};
     const bool scattering = index == scattering_index;
-    const bool sun_shadow = !scattering && index / 2 == 1;
-    const bool lights = !scattering && index % 2 == 1;
+    const bool sun_shadow = !scattering && index / light_kinds == 1;
+    const bool lights = !scattering && index % light_kinds >= 1;
+    const bool local_shadows = !scattering && index % light_kinds == 2;
     if (scattering || sun_shadow) {
         bindings.push_back({4, uniform_buffer, 1, vertex, nullptr});
         bindings.push_back({5, sampled_image, 1, vertex, nullptr});
@@ -60,6 +65,10 @@ std::vector<VkDescriptorSetLayoutBinding> bindings_of(std::size_t index) {
         bindings.push_back({6, sampled_image, 1, vertex, nullptr});
     } else if (lights) {
         bindings.push_back({6, storage_buffer, 1, vertex, nullptr});
+    }
+    if (local_shadows) {
+        bindings.push_back({7, sampled_image, 1, vertex, nullptr});
+        bindings.push_back({8, storage_buffer, 1, vertex, nullptr});
     }
     return bindings;
 }
@@ -93,8 +102,9 @@ tl::expected<ParticleSystem, Error> ParticleSystem::create(const Device& device,
 
 tl::expected<void, Error> ParticleSystem::make_billboards(VkPipelineCache cache, VkFormat color_format,
                                                           VkFormat depth_format) {
-    const std::span<const std::uint32_t> vertex[] = {particle_direct_s0_l0, particle_direct_s0_l1,
-                                                     particle_direct_s1_l0, particle_direct_s1_l1, particle_scattering};
+    const std::span<const std::uint32_t> vertex[] = {
+        particle_direct_s0_l00, particle_direct_s0_l10, particle_direct_s0_l11, particle_direct_s1_l00,
+        particle_direct_s1_l10, particle_direct_s1_l11, particle_scattering};
     for (std::size_t i = 0; i < programs_.size(); ++i) {
         auto set = create_set_layout(*device_, bindings_of(i), true);
         if (!set) {
@@ -223,17 +233,21 @@ void ParticleSystem::add_reads(rg::PassBuilder& pass, const ParticleDraws& draws
     if (has_lights(surroundings)) {
         pass.reads(surroundings.lights->lights, rg::Access::storage_graphics);
     }
+    if (surroundings.local_shadows) {
+        pass.reads(surroundings.local_shadows->maps, rg::Access::sampled_graphics)
+            .reads(surroundings.local_shadows->records, rg::Access::storage_graphics);
+    }
 }
 
 const ParticleSystem::Program& ParticleSystem::program_for(const ParticleSurroundings& surroundings) const {
     const std::size_t sun_shadow = surroundings.sun_shadow ? 1 : 0;
-    const std::size_t lights = has_lights(surroundings) ? 1 : 0;
-    return programs_[surroundings.scattering ? scattering_index : 2 * sun_shadow + lights];
+    const std::size_t lights = surroundings.local_shadows ? 2 : has_lights(surroundings) ? 1 : 0;
+    return programs_[surroundings.scattering ? scattering_index : light_kinds * sun_shadow + lights];
 }
 
 void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, const ParticleSurroundings& surroundings,
                           std::uint32_t interval) const {
-    std::array<rg::Binding, 7> bindings{};
+    std::array<rg::Binding, 9> bindings{};
     std::size_t count = 0;
     const auto bind = [&](const rg::Binding& binding) { bindings[count++] = binding; };
     bind(ctx.storage(0, draws.frame));
@@ -252,6 +266,10 @@ void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, cons
         }
         if (has_lights(surroundings)) {
             bind(ctx.storage(6, surroundings.lights->lights));
+        }
+        if (surroundings.local_shadows) {
+            bind(ctx.sampled(7, surroundings.local_shadows->maps, nearest_.get(), array_view));
+            bind(ctx.storage(8, surroundings.local_shadows->records));
         }
     }
     const Program& program = program_for(surroundings);

@@ -45,8 +45,9 @@ struct ParticleSurroundings {
     rg::Image scene_depth; ///< of the opaque scene, reverse-z, at the size of the colour target
     std::optional<ScatteringVolumeImages> scattering;
     // Read only where there is no scattering volume:
-    std::optional<SunShadow> sun_shadow; ///< absent: the sun reaches everything
-    std::optional<SceneLights> lights;   ///< absent or without a valid buffer: none
+    std::optional<SunShadow> sun_shadow;       ///< absent: the sun reaches everything
+    std::optional<SceneLights> lights;         ///< absent or without a valid buffer: none
+    std::optional<LocalShadows> local_shadows; ///< with `lights`; absent: they reach everything
 };
 
 class ParticleSystem {
@@ -99,7 +100,8 @@ private:
     const Device* device_;
     std::vector<ParticleEmitter> emitters_;
     ParticlePasses passes_;
-    std::array<Program, 5> programs_; ///< by 2 * sun shadow + lights; the last one with a scattering volume
+    std::array<Program, 7> programs_; ///< by 3 * sun shadow + kind of lights (none, without shadows, with them); the
+                                      ///< last one with a scattering volume
     DeviceSampler linear_;
     DeviceSampler nearest_;
     std::vector<Slot> slots_; ///< by frame slot

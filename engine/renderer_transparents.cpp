@@ -66,7 +66,8 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
     const ParticleSurroundings surroundings{.scene_depth = images.depth,
                                             .scattering = inputs.scattering,
                                             .sun_shadow = inputs.sun,
-                                            .lights = inputs.lights};
+                                            .lights = inputs.lights,
+                                            .local_shadows = inputs.local_shadows};
     rg::PassBuilder pass = graph.add_pass("transparents", rg::PassKind::graphics);
     pass.modifies(images.color, rg::Access::color_attachment).reads(images.depth, rg::Access::depth_attachment);
     if (!transparents.empty()) {

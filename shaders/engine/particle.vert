@@ -2,7 +2,8 @@
 // to the particle in sorted place v / 6.
 //
 // SCATTERING 1: light and fog from a scattering volume. 0: no fog, light from the sun (SUN_SHADOW 1: through its
-// cascades), the local lights (LIGHTS 1) and the ambient, scattered alike in all directions.
+// cascades), the local lights (LIGHTS 1; LOCAL_SHADOW 1: with their shadows) and the ambient, scattered alike in all
+// directions.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

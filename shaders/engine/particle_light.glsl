@@ -12,6 +12,11 @@ layout(set = 0, binding = 5) uniform sampler2DArray cascades; // depth, nearest
 #include "common/lights.glsl"
 layout(set = 0, binding = 6, std430) readonly restrict buffer Lights { GpuLight lights[]; };
 #endif
+#if LOCAL_SHADOW
+#include "common/local_shadow.glsl"
+layout(set = 0, binding = 7) uniform sampler2DArray local_shadow_maps; // depth, nearest, clamps
+layout(set = 0, binding = 8, std430) readonly restrict buffer LocalShadows { LocalShadow local_shadows[]; };
+#endif
 
 const float isotropic_phase = 0.0795774715; // 1 / (4 pi), per steradian
 
@@ -40,7 +45,13 @@ vec3 particle_light(vec3 position, float depth_m) {
 #if LIGHTS
     for (uint i = 0u; i < frame.counts.w; ++i) {
         vec3 to_light;
-        irradiance += light_irradiance_normal(lights[i], position, to_light);
+        vec3 arriving = light_irradiance_normal(lights[i], position, to_light);
+#if LOCAL_SHADOW
+        if (casts_local_shadow(lights[i].cone)) {
+            arriving *= local_visibility(local_shadows[local_shadow_index(lights[i].cone)], local_shadow_maps, position);
+        }
+#endif
+        irradiance += arriving;
     }
 #endif
     return irradiance * isotropic_phase + frame.ambient.rgb;

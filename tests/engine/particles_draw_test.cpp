@@ -8,6 +8,7 @@
 #include "engine/particles.hpp"
 #include "features/volumetrics/parameters.hpp"
 #include "shaders/common/lights.h"
+#include "shaders/common/local_shadow.h"
 #include "tests/engine/particles_fixture.hpp"
 
 namespace tyndall::test {
@@ -47,6 +48,7 @@ struct Picture {
     std::optional<Fog> fog = {};
     std::optional<float> shadow_depth = {}; ///< what the only cascade holds
     std::vector<gpu::GpuLight> lights = {};
+    std::optional<double> caster_m = {}; ///< from the first light, in all directions: it alone casts a shadow
 };
 
 constexpr glm::dvec4 background{10.0, 20.0, 30.0, 1.0};
@@ -63,6 +65,8 @@ private:
     void add_fog(rg::GraphBuilder& graph, const Fog& fog, const engine::FrameView& view,
                  engine::ParticleSurroundings& surroundings);
     void add_shadow(rg::GraphBuilder& graph, float depth, engine::ParticleSurroundings& surroundings);
+    void add_local_shadow(rg::GraphBuilder& graph, const gpu::GpuLight& light, double caster_m,
+                          engine::ParticleSurroundings& surroundings);
     template <typename T>
     [[nodiscard]] rg::Buffer import(rg::GraphBuilder& graph, std::string_view name, std::span<const T> content) {
         const engine::Buffer& memory = upload(content);
@@ -132,6 +136,28 @@ void ParticlesDrawTest::add_shadow(rg::GraphBuilder& graph, float depth, engine:
     surroundings.sun_shadow = shadow;
 }
 
+void ParticlesDrawTest::add_local_shadow(rg::GraphBuilder& graph, const gpu::GpuLight& light, double caster_m,
+                                         engine::ParticleSurroundings& surroundings) {
+    const float near_m = 0.1F;
+    const glm::vec3 at(light.position_range);
+    const gpu::LocalShadow record{.row_x = {1.0F, 0.0F, 0.0F, -at.x},
+                                  .row_y = {0.0F, 1.0F, 0.0F, -at.y},
+                                  .row_z = {0.0F, 0.0F, 1.0F, -at.z},
+                                  .lens = {0.5F, near_m, 0.0F, 1.0F},
+                                  .texel = {0.5F, 4.0F, 0.25F, 0.0F}};
+    engine::LocalShadows shadows;
+    shadows.maps =
+        graph.create_image("local shadow maps", {.format = VK_FORMAT_D32_SFLOAT, .extent = {4, 4, 1}, .layers = 6});
+    shadows.records = import(graph, "local shadow records", std::span<const gpu::LocalShadow>(&record, 1));
+    for (std::uint32_t layer = 0; layer < 6; ++layer) {
+        graph.add_pass("local shadow map " + std::to_string(layer), rg::PassKind::graphics)
+            .writes(shadows.maps, rg::Access::depth_attachment,
+                    {.range = {.base_layer = layer, .layer_count = 1},
+                     .clear = rg::clear_depth(near_m / static_cast<float>(caster_m))});
+    }
+    surroundings.local_shadows = shadows;
+}
+
 std::vector<glm::vec4> ParticlesDrawTest::draw(const std::vector<ParticleEmitter>& emitters, const Picture& picture) {
     constexpr VkFormat color_format = VK_FORMAT_R32G32B32A32_SFLOAT;
     constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
@@ -157,6 +183,9 @@ std::vector<glm::vec4> ParticlesDrawTest::draw(const std::vector<ParticleEmitter
     }
     if (picture.shadow_depth) {
         add_shadow(graph, *picture.shadow_depth, surroundings);
+    }
+    if (picture.caster_m) {
+        add_local_shadow(graph, picture.lights.front(), *picture.caster_m, surroundings);
     }
     if (!picture.lights.empty()) {
         surroundings.lights = engine::SceneLights{
@@ -285,7 +314,7 @@ TEST_F(ParticlesDrawTest, SunReachesWhatItsCascadesLeaveLit) {
     expect_near(center({particle}, picture), over(background, {0.0, 0.0, 0.0}, 0.4), 1e-5);
 }
 
-TEST_F(ParticlesDrawTest, LocalLightsAddUp) {
+TEST_F(ParticlesDrawTest, LocalLightsAddUpAsFarAsTheirShadowMapsLeaveThem) {
     Picture picture;
     picture.shadow_depth = 1.0F;
     for (const float x : {3.0F, -4.0F}) {
@@ -299,6 +328,18 @@ TEST_F(ParticlesDrawTest, LocalLightsAddUp) {
     const glm::dvec3 light = glm::dvec3(100, 50, 25) * ((irradiance(3.0) + irradiance(4.0)) / (4.0 * std::numbers::pi));
     expect_near(center({resting({0, 0, -10}, 1.0F, 0.4F)}, picture), over(background, albedo * (light + 4.0), 0.4),
                 1e-5);
+
+    picture.lights.front().cone.z = 1.0F;
+    picture.caster_m = 3.1; // behind the particle
+    expect_near(center({resting({0, 0, -10}, 1.0F, 0.4F)}, picture), over(background, albedo * (light + 4.0), 0.4),
+                1e-5);
+    picture.caster_m = 2.9;
+    const glm::dvec3 second = glm::dvec3(100, 50, 25) * (irradiance(4.0) / (4.0 * std::numbers::pi));
+    for (const bool sun : {true, false}) {
+        picture.shadow_depth = sun ? std::optional(1.0F) : std::nullopt;
+        expect_near(center({resting({0, 0, -10}, 1.0F, 0.4F)}, picture), over(background, albedo * (second + 4.0), 0.4),
+                    1e-5);
+    }
 }
 
 TEST_F(ParticlesDrawTest, ParticlesBelowAPixelKeepTheirSumAndDoNotVanish) {
