@@ -39,7 +39,8 @@ ForwardVariant ForwardInputs::variant(bool transparent) const {
             .local_shadow = local_shadows.has_value(),
             .transparent = transparent,
             .scattering = scattering.has_value(),
-            .air = air};
+            .air = air,
+            .airlight_features = scattering ? scattering->airlight_features : 0};
 }
 
 void ForwardInputs::declare(rg::PassBuilder& pass) const {

@@ -92,7 +92,8 @@ struct LightClusters {
 struct ScatteringVolumeImages {
     rg::Image accumulated;
     rg::Image in_scattered;
-    rg::Buffer parameters; ///< uniform, begins with a gpu::ScatteringVolume
+    rg::Buffer parameters;               ///< uniform, begins with a gpu::ScatteringVolume and gpu::Airlights
+    std::uint32_t airlight_features = 0; ///< see shaders/common/airlight.h
 };
 
 /// Optional, put by a feature whose passes use imports of its own: bound along with the renderer's.

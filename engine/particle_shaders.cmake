@@ -5,7 +5,10 @@ tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_sort_excha
 tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_merge_block DEFINES STEP=2)
 tyndall_shader(tyndall_engine engine/particle_split.comp NAME particle_split)
 tyndall_shader(tyndall_engine engine/particle.frag NAME particle_fragment)
-tyndall_shader(tyndall_engine engine/particle.vert NAME particle_scattering DEFINES SCATTERING=1)
+foreach(local_shadow 0 1)
+    tyndall_shader(tyndall_engine engine/particle.vert NAME particle_scattering_p${local_shadow}
+                   DEFINES SCATTERING=1 LOCAL_SHADOW=${local_shadow})
+endforeach()
 # What is bound differs between these, so they are variants and not specialization constants: every declared binding must
 # be written.
 foreach(sun_shadow 0 1)

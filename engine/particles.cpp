@@ -12,14 +12,15 @@
 #include "spirv/particle_direct_s1_l10.h"
 #include "spirv/particle_direct_s1_l11.h"
 #include "spirv/particle_fragment.h"
-#include "spirv/particle_scattering.h"
+#include "spirv/particle_scattering_p0.h"
+#include "spirv/particle_scattering_p1.h"
 
 namespace tyndall::engine {
 namespace {
 
 /// Of the programs without a scattering volume: no local lights, lights without shadows, lights with shadows.
 constexpr std::size_t light_kinds = 3;
-constexpr std::size_t scattering_index = 2 * light_kinds;
+constexpr std::size_t scattering_index = 2 * light_kinds; // and 1 more with shadows of lights that it leaves out
 constexpr VkDeviceSize command_bytes = sizeof(VkDrawIndirectCommand);
 
 /// Host-written before the frame is submitted, which makes it visible.
@@ -53,10 +54,10 @@ std::vector<VkDescriptorSetLayoutBinding> bindings_of(std::size_t index) {
                                                        {1, storage_buffer, 1, vertex, nullptr},
                                                        {2, storage_buffer, 1, vertex, nullptr},
                                                        {3, sampled_image, 1, fragment, nullptr}};
-    const bool scattering = index == scattering_index;
+    const bool scattering = index >= scattering_index;
     const bool sun_shadow = !scattering && index / light_kinds == 1;
     const bool lights = !scattering && index % light_kinds >= 1;
-    const bool local_shadows = !scattering && index % light_kinds == 2;
+    const bool local_shadows = scattering ? index > scattering_index : index % light_kinds == 2;
     if (scattering || sun_shadow) {
         bindings.push_back({4, uniform_buffer, 1, vertex, nullptr});
         bindings.push_back({5, sampled_image, 1, vertex, nullptr});
@@ -77,6 +78,23 @@ bool has_lights(const ParticleSurroundings& surroundings) {
     return surroundings.lights && surroundings.lights->lights.valid();
 }
 
+/// With a volume only of lights that it leaves out: what it holds is in shadow already.
+bool asks_local_shadows(const ParticleSurroundings& surroundings) {
+    return surroundings.local_shadows && (!surroundings.scattering || surroundings.scattering->airlight_features != 0);
+}
+
+/// Its place in ParticleSystem::programs_.
+std::size_t program_for(const ParticleSurroundings& surroundings) {
+    const bool local_shadows = asks_local_shadows(surroundings);
+    const std::size_t sun_shadow = surroundings.sun_shadow ? 1 : 0;
+    const std::size_t lights = local_shadows ? 2 : has_lights(surroundings) ? 1 : 0;
+    return surroundings.scattering ? scattering_index + (local_shadows ? 1 : 0) : light_kinds * sun_shadow + lights;
+}
+
+std::uint32_t airlight_features_of(const ParticleSurroundings& surroundings) {
+    return surroundings.scattering ? surroundings.scattering->airlight_features : 0;
+}
+
 } // namespace
 
 tl::expected<ParticleSystem, Error> ParticleSystem::create(const Device& device, VkPipelineCache cache,
@@ -90,21 +108,17 @@ tl::expected<ParticleSystem, Error> ParticleSystem::create(const Device& device,
     if (!passes) {
         return tl::unexpected(passes.error());
     }
-    ParticleSystem self(device, std::move(emitters), std::move(*passes));
-    const auto made = self.make_billboards(cache, color_format, depth_format)
-                          .and_then([&] { return self.make_samplers(); })
-                          .and_then([&] { return self.make_slots(frames_in_flight); });
+    ParticleSystem self(device, cache, std::move(emitters), std::move(*passes), color_format, depth_format);
+    const auto made = self.make_layouts().and_then([&] { return self.make_samplers(); }).and_then([&] {
+        return self.make_slots(frames_in_flight);
+    });
     if (!made) {
         return tl::unexpected(made.error());
     }
     return self;
 }
 
-tl::expected<void, Error> ParticleSystem::make_billboards(VkPipelineCache cache, VkFormat color_format,
-                                                          VkFormat depth_format) {
-    const std::span<const std::uint32_t> vertex[] = {
-        particle_direct_s0_l00, particle_direct_s0_l10, particle_direct_s0_l11, particle_direct_s1_l00,
-        particle_direct_s1_l10, particle_direct_s1_l11, particle_scattering};
+tl::expected<void, Error> ParticleSystem::make_layouts() {
     for (std::size_t i = 0; i < programs_.size(); ++i) {
         auto set = create_set_layout(*device_, bindings_of(i), true);
         if (!set) {
@@ -115,20 +129,35 @@ tl::expected<void, Error> ParticleSystem::make_billboards(VkPipelineCache cache,
         if (!layout) {
             return tl::unexpected(layout.error());
         }
-        auto pipeline = create_graphics_pipeline(*device_, cache,
-                                                 {.layout = layout->get(),
-                                                  .vertex_spirv = vertex[i],
-                                                  .fragment_spirv = particle_fragment,
-                                                  .color_formats = std::span(&color_format, 1),
-                                                  .depth_format = depth_format,
-                                                  .blends = std::span(&premultiplied, 1),
-                                                  .depth_test = true,
-                                                  .depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL});
-        if (!pipeline) {
-            return tl::unexpected(pipeline.error());
-        }
-        programs_[i] = {std::move(*set), std::move(*layout), std::move(*pipeline)};
+        programs_[i].set = std::move(*set);
+        programs_[i].layout = std::move(*layout);
     }
+    return {};
+}
+
+tl::expected<void, Error> ParticleSystem::make_pipeline(std::size_t program, std::uint32_t airlight_features) {
+    Program& wanted = programs_[program];
+    if (wanted.pipelines.contains(airlight_features)) {
+        return {};
+    }
+    const std::span<const std::uint32_t> vertex[] = {
+        particle_direct_s0_l00, particle_direct_s0_l10, particle_direct_s0_l11, particle_direct_s1_l00,
+        particle_direct_s1_l10, particle_direct_s1_l11, particle_scattering_p0, particle_scattering_p1};
+    const SpecializationConstant constant{0, airlight_features};
+    auto pipeline = create_graphics_pipeline(*device_, cache_,
+                                             {.layout = wanted.layout.get(),
+                                              .vertex_spirv = vertex[program],
+                                              .fragment_spirv = particle_fragment,
+                                              .constants = {&constant, 1},
+                                              .color_formats = std::span(&color_format_, 1),
+                                              .depth_format = depth_format_,
+                                              .blends = std::span(&premultiplied, 1),
+                                              .depth_test = true,
+                                              .depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL});
+    if (!pipeline) {
+        return tl::unexpected(pipeline.error());
+    }
+    wanted.pipelines.emplace(airlight_features, std::move(*pipeline));
     return {};
 }
 
@@ -213,8 +242,8 @@ tl::expected<ParticleDraws, Error> ParticleSystem::declare(rg::GraphBuilder& gra
     return draws;
 }
 
-void ParticleSystem::add_reads(rg::PassBuilder& pass, const ParticleDraws& draws,
-                               const ParticleSurroundings& surroundings) const {
+tl::expected<void, Error> ParticleSystem::add_reads(rg::PassBuilder& pass, const ParticleDraws& draws,
+                                                    const ParticleSurroundings& surroundings) {
     pass.reads(draws.frame, rg::Access::storage_graphics)
         .reads(draws.particles, rg::Access::storage_graphics)
         .reads(draws.keys, rg::Access::storage_graphics)
@@ -224,25 +253,20 @@ void ParticleSystem::add_reads(rg::PassBuilder& pass, const ParticleDraws& draws
         pass.reads(surroundings.scattering->parameters, rg::Access::uniform_graphics)
             .reads(surroundings.scattering->accumulated, rg::Access::sampled_graphics)
             .reads(surroundings.scattering->in_scattered, rg::Access::sampled_graphics);
-        return;
+    } else {
+        if (surroundings.sun_shadow) {
+            pass.reads(surroundings.sun_shadow->parameters, rg::Access::uniform_graphics)
+                .reads(surroundings.sun_shadow->cascades, rg::Access::sampled_graphics);
+        }
+        if (has_lights(surroundings)) {
+            pass.reads(surroundings.lights->lights, rg::Access::storage_graphics);
+        }
     }
-    if (surroundings.sun_shadow) {
-        pass.reads(surroundings.sun_shadow->parameters, rg::Access::uniform_graphics)
-            .reads(surroundings.sun_shadow->cascades, rg::Access::sampled_graphics);
-    }
-    if (has_lights(surroundings)) {
-        pass.reads(surroundings.lights->lights, rg::Access::storage_graphics);
-    }
-    if (surroundings.local_shadows) {
+    if (asks_local_shadows(surroundings)) {
         pass.reads(surroundings.local_shadows->maps, rg::Access::sampled_graphics)
             .reads(surroundings.local_shadows->records, rg::Access::storage_graphics);
     }
-}
-
-const ParticleSystem::Program& ParticleSystem::program_for(const ParticleSurroundings& surroundings) const {
-    const std::size_t sun_shadow = surroundings.sun_shadow ? 1 : 0;
-    const std::size_t lights = surroundings.local_shadows ? 2 : has_lights(surroundings) ? 1 : 0;
-    return programs_[surroundings.scattering ? scattering_index : light_kinds * sun_shadow + lights];
+    return make_pipeline(program_for(surroundings), airlight_features_of(surroundings));
 }
 
 void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, const ParticleSurroundings& surroundings,
@@ -267,13 +291,14 @@ void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, cons
         if (has_lights(surroundings)) {
             bind(ctx.storage(6, surroundings.lights->lights));
         }
-        if (surroundings.local_shadows) {
-            bind(ctx.sampled(7, surroundings.local_shadows->maps, nearest_.get(), array_view));
-            bind(ctx.storage(8, surroundings.local_shadows->records));
-        }
     }
-    const Program& program = program_for(surroundings);
-    ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline.get());
+    if (asks_local_shadows(surroundings)) {
+        bind(ctx.sampled(7, surroundings.local_shadows->maps, nearest_.get(), array_view));
+        bind(ctx.storage(8, surroundings.local_shadows->records));
+    }
+    const Program& program = programs_[program_for(surroundings)];
+    const Pipeline& pipeline = program.pipelines.at(airlight_features_of(surroundings));
+    ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
     ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout.get(), 0, std::span(bindings).first(count));
     ctx.vk().CmdDrawIndirect(ctx.cmd(), ctx.buffer(draws.commands), interval * command_bytes, 1,
                              static_cast<std::uint32_t>(command_bytes));

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -45,9 +46,10 @@ struct ParticleSurroundings {
     rg::Image scene_depth; ///< of the opaque scene, reverse-z, at the size of the colour target
     std::optional<ScatteringVolumeImages> scattering;
     // Read only where there is no scattering volume:
-    std::optional<SunShadow> sun_shadow;       ///< absent: the sun reaches everything
-    std::optional<SceneLights> lights;         ///< absent or without a valid buffer: none
-    std::optional<LocalShadows> local_shadows; ///< with `lights`; absent: they reach everything
+    std::optional<SunShadow> sun_shadow; ///< absent: the sun reaches everything
+    std::optional<SceneLights> lights;   ///< absent or without a valid buffer: none
+    // Read in that case, and with a scattering volume of the lights that it leaves out:
+    std::optional<LocalShadows> local_shadows; ///< absent: lights reach everything
 };
 
 class ParticleSystem {
@@ -65,9 +67,10 @@ public:
                                                              const ParticleLight& light,
                                                              std::span<const float> split_depths_m);
 
-    /// Declares what `draw` reads. The pass itself declares its colour target and reads of the scene's depth as a
-    /// depth attachment.
-    void add_reads(rg::PassBuilder& pass, const ParticleDraws& draws, const ParticleSurroundings& surroundings) const;
+    /// Declares what `draw` reads, and makes the pipeline that it binds. The pass itself declares its colour target and
+    /// reads of the scene's depth as a depth attachment. The error is the device's.
+    [[nodiscard]] tl::expected<void, Error> add_reads(rg::PassBuilder& pass, const ParticleDraws& draws,
+                                                      const ParticleSurroundings& surroundings);
 
     /// Draws interval `interval` of [0, draws.interval_count): 0 lies behind the farthest split depth, the last one
     /// before the nearest. A particle at the very depth of a split is in the nearer interval. Binds its own pipeline
@@ -81,27 +84,31 @@ private:
     struct Program {
         DescriptorSetLayout set;
         PipelineLayout layout;
-        Pipeline pipeline;
+        std::map<std::uint32_t, Pipeline> pipelines; ///< by `airlight_features`
     };
     struct Slot {
         Buffer frame;
         Buffer splits; ///< grows when a frame has more transparent draws
     };
-    ParticleSystem(const Device& device, std::vector<ParticleEmitter> emitters, ParticlePasses passes)
-        : device_(&device), emitters_(std::move(emitters)), passes_(std::move(passes)) {}
-    [[nodiscard]] tl::expected<void, Error> make_billboards(VkPipelineCache cache, VkFormat color_format,
-                                                            VkFormat depth_format);
+    ParticleSystem(const Device& device, VkPipelineCache cache, std::vector<ParticleEmitter> emitters,
+                   ParticlePasses passes, VkFormat color, VkFormat depth)
+        : device_(&device), cache_(cache), emitters_(std::move(emitters)), passes_(std::move(passes)),
+          color_format_(color), depth_format_(depth) {}
+    [[nodiscard]] tl::expected<void, Error> make_layouts();
+    [[nodiscard]] tl::expected<void, Error> make_pipeline(std::size_t program, std::uint32_t airlight_features);
     [[nodiscard]] tl::expected<void, Error> make_samplers();
     [[nodiscard]] tl::expected<void, Error> make_slots(std::uint32_t count);
     [[nodiscard]] tl::expected<void, Error> write_host_data(const FrameView& view, const ParticleLight& light,
                                                             std::span<const float> split_depths_m);
-    [[nodiscard]] const Program& program_for(const ParticleSurroundings& surroundings) const;
 
     const Device* device_;
+    VkPipelineCache cache_;
     std::vector<ParticleEmitter> emitters_;
     ParticlePasses passes_;
-    std::array<Program, 7> programs_; ///< by 3 * sun shadow + kind of lights (none, without shadows, with them); the
-                                      ///< last one with a scattering volume
+    VkFormat color_format_;
+    VkFormat depth_format_;
+    std::array<Program, 8> programs_; ///< by 3 * sun shadow + kind of lights (none, without shadows, with them); the
+                                      ///< last two with a scattering volume
     DeviceSampler linear_;
     DeviceSampler nearest_;
     std::vector<Slot> slots_; ///< by frame slot

@@ -31,8 +31,9 @@ struct ForwardVariant {
     LocalLights lights = LocalLights::none;
     bool local_shadow = false; ///< some of the lights, so there are some, cast shadows
     bool transparent = false;
-    bool scattering = false;       ///< with `transparent` only
-    std::optional<LightMarch> air; ///< weakens light on its way
+    bool scattering = false;             ///< with `transparent` only
+    std::optional<LightMarch> air;       ///< weakens light on its way
+    std::uint32_t airlight_features = 0; ///< with `scattering` only; see shaders/common/airlight.h
 
     friend auto operator<=>(const ForwardVariant&, const ForwardVariant&) = default;
 };

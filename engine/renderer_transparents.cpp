@@ -75,7 +75,9 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
         inputs.declare(pass);
     }
     if (frame_.particles) {
-        particles_->add_reads(pass, *frame_.particles, surroundings);
+        if (auto added = particles_->add_reads(pass, *frame_.particles, surroundings); !added) {
+            return added;
+        }
     }
     pass.executes([transparents = std::move(transparents), layout, inputs, geometry = frame_.geometry,
                    particles = frame_.particles, system = particles_, surroundings](rg::PassContext& ctx) {

@@ -32,6 +32,10 @@ gpu::GpuLight dark(gpu::GpuLight light) {
     return light;
 }
 
+bool is_dark(const gpu::GpuLight& light) {
+    return glm::vec3(light.intensity_type) == glm::vec3(0.0F);
+}
+
 /// What is left of both lists without what they have in common: at the same places where they are of one length, else
 /// at their beginnings and ends.
 void remove_common(std::vector<gpu::GpuLight>& a, std::vector<gpu::GpuLight>& b) {
@@ -150,7 +154,10 @@ std::vector<LightChange> light_changes(const FrameInputs& frame, const FrameMemo
         const gpu::GpuLight old = i < was.size() ? was[i] : dark(is[i]);
         // A light that begins or ceases to cast shadows lights other places: as if it went out.
         const bool stays = i < is.size() && casts_shadow(is[i]) == casts_shadow(old);
-        changes.push_back({old, stays ? is[i] : dark(old)});
+        const gpu::GpuLight now = stays ? is[i] : dark(old);
+        if (!is_dark(old) || !is_dark(now)) {
+            changes.push_back({old, now});
+        }
     }
     constexpr std::size_t most = TYNDALL_LIGHT_CHANGE_COUNT;
     if (changes.size() > most) {

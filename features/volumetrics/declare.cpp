@@ -178,8 +178,8 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     const FrameInputs& inputs = frame->inputs;
     const LightingVariant variant{.storage = inputs.settings.storage,
                                   .sun_shadow = frame->sun_shadow,
-                                  .lights = frame->lights,
-                                  .local_shadow = frame->local_shadow,
+                                  .lights = frame->froxel_lights,
+                                  .local_shadow = frame->froxel_shadow,
                                   .history = inputs.settings.temporal.enabled};
     const GridSettings& grid = inputs.settings.grid;
     const VisibilitySettings& visibility = inputs.settings.visibility;
@@ -187,7 +187,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
     const PhaseLobes phase = phase_of(inputs.medium);
     const LightMarch march = light_march(inputs.medium, inputs.settings);
-    const std::array<std::uint32_t, 14> constants{
+    const std::array<std::uint32_t, 15> constants{
         inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
         variant.sun_shadow ? graph.describe(frame->shadow_map)->layers : 0,
         is_perspective(inputs.camera),
@@ -202,6 +202,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         weakens_light(inputs.medium, inputs.settings),
         march.volumes,
         march.octaves,
+        variant.lights != LocalLights::none && frame->airlight_features != 0,
     };
     const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
     if (!program) {
@@ -264,7 +265,9 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         }
         run(ctx, dispatch, std::span(bindings).first(count));
     });
-    frame->volume = VolumeResources{.in_scattered = in_scattered, .parameters = frame->parameter_buffer};
+    frame->volume = VolumeResources{.in_scattered = in_scattered,
+                                    .parameters = frame->parameter_buffer,
+                                    .airlight_features = frame->airlight_features};
     return {};
 }
 
@@ -323,13 +326,22 @@ void Feature::State::declare_fog(rg::GraphBuilder& graph, const OpaqueResources&
         .reads(resources.depth, Access::sampled_fragment)
         .reads(frame->volume->accumulated, Access::sampled_fragment)
         .modifies(resources.color, Access::color_attachment);
+    if (frame->airlight_shadow) {
+        pass.reads(frame->shadow.local_maps, Access::sampled_fragment)
+            .reads(frame->shadow.local_records, Access::storage_graphics);
+    }
     pass.executes([program = frame->fog_on_opaque, parameters = frame->parameter_buffer, depth = resources.depth,
-                   accumulated = frame->volume->accumulated, linear_sampler = linear,
+                   accumulated = frame->volume->accumulated, shadow = frame->shadow,
+                   local_shadow = frame->airlight_shadow, linear_sampler = linear,
                    nearest_sampler = nearest](PassContext& ctx) {
         ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline);
-        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0,
-                 std::array{ctx.uniform(0, parameters), ctx.sampled(1, depth, nearest_sampler, depth_view),
-                            ctx.sampled(2, accumulated, linear_sampler, array_view)});
+        std::array<Binding, 5> bindings{ctx.uniform(0, parameters), ctx.sampled(1, depth, nearest_sampler, depth_view),
+                                        ctx.sampled(2, accumulated, linear_sampler, array_view)};
+        if (local_shadow) {
+            bindings[3] = ctx.sampled(3, shadow.local_maps, nearest_sampler, depth_array_view);
+            bindings[4] = ctx.storage(4, shadow.local_records);
+        }
+        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0, std::span(bindings).first(local_shadow ? 5 : 3));
         ctx.vk().CmdDraw(ctx.cmd(), 3, 1, 0, 0);
     });
 }

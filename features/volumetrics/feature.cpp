@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "features/volumetrics/airlight.hpp"
 #include "features/volumetrics/depth_range.hpp"
 #include "features/volumetrics/feature_state.hpp"
 #include "features/volumetrics/range_check.hpp"
@@ -102,6 +103,20 @@ rg::QueueWish Feature::State::wish() const {
     return frame->inputs.settings.async_compute ? rg::QueueWish::async_compute : rg::QueueWish::automatic;
 }
 
+void Feature::State::tell(const AirlightChoice& airlight, std::size_t light_count) {
+    const auto lights = [](std::size_t count) {
+        return std::to_string(count) + (count == 1 ? " local light" : " local lights");
+    };
+    const std::size_t chosen = airlight.lights.size();
+    if (chosen > 0) {
+        omit(lights(chosen) + " of " + std::to_string(light_count) + " in the froxels",
+             "too fine for them near the view's rays: each pixel integrates what they bring");
+    }
+    if (chosen < light_count) {
+        omit("integration along each pixel's ray of " + lights(light_count - chosen), airlight.why_not);
+    }
+}
+
 tl::expected<void, Error> Feature::State::prepare_programs() {
     const GridSettings& grid = frame->inputs.settings.grid;
     const Medium& medium = frame->inputs.medium;
@@ -131,7 +146,8 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
         }
         frame->light_clustering = *clustering;
     }
-    auto fog = pipelines.full_screen_blend(full_screen_shader(), fog_on_opaque_shader(), frame->inputs.color_format);
+    auto fog = pipelines.full_screen_blend(full_screen_shader(), fog_on_opaque_shader(frame->airlight_shadow),
+                                           frame->inputs.color_format, std::array{frame->airlight_features});
     if (!fog) {
         return tl::unexpected(fog.error());
     }
@@ -205,13 +221,19 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
             state.omit("a range fitted to the view", fitted.why);
         }
     }
-    FrameState frame{.inputs = inputs};
-    frame.cold = starts_cold(inputs, state.before);
-    if (frame.cold) {
+    const bool cold = starts_cold(inputs, state.before);
+    if (cold) {
         state.before.reset();
     }
+    const AirlightChoice airlight = choose_airlights(inputs, state.before);
+    state.tell(airlight, inputs.lights.size());
+    FrameState frame{.inputs = inputs, .cold = cold};
+    frame.inputs.lights = froxel_lights(inputs, airlight);
     frame.camera_stands = camera_stands(inputs, state.before);
-    frame.parameters = volumetric_parameters(inputs, state.before);
+    frame.parameters = volumetric_parameters(frame.inputs, state.before);
+    frame.parameters.airlights = airlights(inputs, airlight);
+    write_kept_lights(airlight, frame.parameters);
+    frame.airlight_features = airlight_features(inputs, airlight);
     const auto light_count = static_cast<std::uint32_t>(inputs.lights.size());
     frame.cluster_parameters = light_clusters(inputs.settings.grid, light_count, frame.parameters.volume.law);
     frame.depth_curve = inputs.settings.grid.law == DepthLawKind::curve;
@@ -221,9 +243,16 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
         const bool cluster = inputs.settings.clusters && light_count > 1;
         const bool compact = light_count <= TYNDALL_COMPACT_LIGHT_COUNT;
         frame.lights = !cluster ? LocalLights::all : compact ? LocalLights::clustered_compact : LocalLights::clustered;
-        frame.local_shadow = std::any_of(inputs.lights.begin(), inputs.lights.end(),
-                                         [](const gpu::GpuLight& l) { return l.cone.z > 0.5F; });
+        const auto casts = [](const gpu::GpuLight& light) { return light.cone.z > 0.5F; };
+        frame.local_shadow = std::any_of(inputs.lights.begin(), inputs.lights.end(), casts);
+        frame.airlight_shadow = std::any_of(airlight.lights.begin(), airlight.lights.end(),
+                                            [&](std::uint32_t i) { return casts(inputs.lights[i]); });
+        frame.froxel_shadow =
+            std::any_of(frame.inputs.lights.begin(), frame.inputs.lights.end(), [&](const gpu::GpuLight& light) {
+                return casts(light) && glm::vec3(light.intensity_type) != glm::vec3(0.0F);
+            });
     }
+    frame.froxel_lights = airlight.lights.size() < light_count ? frame.lights : LocalLights::none;
     state.frame = frame;
     if (auto made = state.prepare_programs(); !made) {
         state.frame.reset();
@@ -231,7 +260,8 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
     }
     state.host_buffers->write(inputs.frame_slot, state.frame->parameters);
     state.host_buffers->write(inputs.frame_slot, state.frame->cluster_parameters);
-    state.before = memory_of(inputs, state.frame->parameters);
+    state.before = memory_of(state.frame->inputs, state.frame->parameters);
+    state.before->airlights = airlight.lights;
     return {};
 }
 
@@ -298,6 +328,7 @@ tl::expected<void, Error> Feature::declare_after_shadow_maps(rg::GraphBuilder& g
             Error{"A local light casts shadows (GpuLight::cone.z), so declare_after_shadow_maps needs "
                   "local_maps and local_records."});
     }
+    frame.shadow = resources;
     if (!frame.local_shadow) {
         state.omit("shadows of local lights",
                    frame.lights == LocalLights::none ? "there is no local light" : "no local light casts one");

@@ -66,9 +66,10 @@ struct ClusterResources {
 
 /// For shaders/common/scattering_volume.glsl.
 struct VolumeResources {
-    rg::Image accumulated;  ///< 2D array of slices + 1 layers: radiance toward the eye, optical depth
-    rg::Image in_scattered; ///< 3D: radiance per unit of scattering coefficient
-    rg::Buffer parameters;  ///< begins with gpu::ScatteringVolume
+    rg::Image accumulated;               ///< 2D array of slices + 1 layers: radiance toward the eye, optical depth
+    rg::Image in_scattered;              ///< 3D: radiance per unit of scattering coefficient
+    rg::Buffer parameters;               ///< begins with gpu::ScatteringVolume, then gpu::Airlights
+    std::uint32_t airlight_features = 0; ///< see shaders/common/airlight.h
 };
 
 /// Intermediate images, for looking at; invalid where their pass was left out.

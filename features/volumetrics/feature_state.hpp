@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "features/volumetrics/airlight.hpp"
 #include "features/volumetrics/feature.hpp"
 #include "features/volumetrics/host_buffers.hpp"
 #include "features/volumetrics/parameters.hpp"
@@ -13,7 +14,7 @@ namespace tyndall::volumetrics {
 
 /// One frame between begin_frame and declare_after_opaque.
 struct FrameState {
-    FrameInputs inputs;
+    FrameInputs inputs; ///< its lights as the froxels see them
     gpu::VolumetricParameters parameters{};
     gpu::LightClusters cluster_parameters{};
     bool cold = true;
@@ -22,7 +23,11 @@ struct FrameState {
     bool depth_curve = false; ///< the depth law is one
     bool emission = false;    ///< the medium emits somewhere
     LocalLights lights = LocalLights::none;
-    bool local_shadow = false; ///< some local light casts one
+    bool local_shadow = false;                     ///< some local light casts one
+    bool froxel_shadow = false;                    ///< one that is in the froxels does
+    bool airlight_shadow = false;                  ///< one that each pixel integrates does
+    LocalLights froxel_lights = LocalLights::none; ///< without those that each pixel integrates
+    std::uint32_t airlight_features = 0;           ///< see shaders/common/airlight.h
     Program density_injection;
     Program light_clustering;
     Program fog_on_opaque;
@@ -31,6 +36,7 @@ struct FrameState {
     rg::Buffer parameter_buffer;
     rg::Buffer light_buffer;
     rg::Buffer compact_lights; ///< its first lights, for binding as uniforms
+    ShadowResources shadow;
     std::optional<ClusterResources> clusters;
     std::optional<VolumeResources> volume;
     rg::Image shadow_map; ///< the ESM or the cascades, as the settings' visibility wants
@@ -66,6 +72,7 @@ struct Feature::State {
 
     /// Creates the frame's pipelines that are known before anything is declared.
     [[nodiscard]] tl::expected<void, Error> prepare_programs();
+    void tell(const AirlightChoice& airlight, std::size_t light_count);
     void omit(std::string what, std::string why) { omissions.push_back({std::move(what), std::move(why)}); }
 
     // Passes, in order; declare.cpp.

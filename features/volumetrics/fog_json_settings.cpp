@@ -41,6 +41,7 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
     root.read("light_path", settings.light_path,
               {{"none", LightPath::none}, {"closed_form", LightPath::closed_form}, {"march", LightPath::march}});
     root.read("light_path_steps", settings.light_path_steps);
+    subsection(root, "airlight", error, [&](Section& s) { s.read("max_lights", settings.airlight.max_lights); });
     subsection(root, "visibility", error, [&](Section& s) {
         s.read("method", settings.visibility.method,
                {{"one_tap", SunVisibility::one_tap},

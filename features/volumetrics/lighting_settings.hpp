@@ -29,6 +29,11 @@ enum class LightPath : std::uint8_t {
     march,       ///< these and, by a march along the way, local volumes and noise
 };
 
+/// Lights that are integrated along the ray of each pixel and not in the froxels (airlight.hpp).
+struct AirlightSettings {
+    std::uint32_t max_lights = 4; ///< [0, 32]
+};
+
 struct VisibilitySettings {
     SunVisibility method = SunVisibility::one_tap;
     std::uint32_t taps = 4; ///< of n_taps, [1, 64]

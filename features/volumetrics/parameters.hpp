@@ -19,8 +19,9 @@ struct FrameMemory {
     Medium medium;
     glm::uvec2 image_size{0};
     std::optional<Sun> sun;
-    std::vector<gpu::GpuLight> lights; ///< in the render space of `camera`
-    glm::vec4 air{0.0F};               ///< of air_of
+    std::vector<gpu::GpuLight> lights;    ///< in the render space of `camera`; dark where the froxels leave them out
+    std::vector<std::uint32_t> airlights; ///< those that they leave out, ascending
+    glm::vec4 air{0.0F};                  ///< of air_of
     LightMarch march;
     gpu::ScatteringVolume volume;
     StorageFormat storage = StorageFormat::fp16;

@@ -10,6 +10,15 @@ Error vulkan_error(const char* what, const char* shader, VkResult result) {
             std::to_string(static_cast<int>(result)) + ")."};
 }
 
+/// Constants of four bytes each, one behind the other, with ids from 0 on.
+std::vector<VkSpecializationMapEntry> constant_map(std::size_t count) {
+    std::vector<VkSpecializationMapEntry> map;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        map.push_back({i, i * 4, 4});
+    }
+    return map;
+}
+
 } // namespace
 
 Pipelines::Pipelines(const rg::DeviceTable& vk, VkDevice device, VkPipelineCache cache)
@@ -93,10 +102,7 @@ tl::expected<Program, Error> Pipelines::compute(const ShaderCode& shader, const 
     }
     tl::expected<void, Error> made = make_layout(shader, VK_SHADER_STAGE_COMPUTE_BIT, entry);
     if (made) {
-        std::vector<VkSpecializationMapEntry> map;
-        for (std::uint32_t i = 0; i < entry.key.size(); ++i) {
-            map.push_back({i, i * 4, 4});
-        }
+        const std::vector<VkSpecializationMapEntry> map = constant_map(entry.key.size());
         const VkSpecializationInfo specialization{static_cast<std::uint32_t>(map.size()), map.data(),
                                                   entry.key.size() * 4, entry.key.data()};
         const VkComputePipelineCreateInfo info{
@@ -124,8 +130,10 @@ tl::expected<Program, Error> Pipelines::compute(const ShaderCode& shader, const 
 }
 
 tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vertex, const ShaderCode& fragment,
-                                                          VkFormat color_format) {
+                                                          VkFormat color_format,
+                                                          std::span<const std::uint32_t> constants) {
     Entry entry{.key = {static_cast<std::uint32_t>(color_format)}, .code = fragment.spirv.data()};
+    entry.key.insert(entry.key.end(), constants.begin(), constants.end());
     if (const Entry* found = find(fragment, entry.key)) {
         return found->program;
     }
@@ -140,6 +148,9 @@ tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vert
     }
     tl::expected<void, Error> made = make_layout(fragment, VK_SHADER_STAGE_FRAGMENT_BIT, entry);
     if (made) {
+        const std::vector<VkSpecializationMapEntry> map = constant_map(constants.size());
+        const VkSpecializationInfo specialization{static_cast<std::uint32_t>(map.size()), map.data(),
+                                                  constants.size_bytes(), constants.data()};
         const VkPipelineShaderStageCreateInfo stages[] = {
             {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
              .stage = VK_SHADER_STAGE_VERTEX_BIT,
@@ -148,7 +159,8 @@ tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vert
             {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
              .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
              .module = *fragment_module,
-             .pName = "main"},
+             .pName = "main",
+             .pSpecializationInfo = &specialization},
         };
         const VkPipelineVertexInputStateCreateInfo vertex_input{
             .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};

@@ -34,12 +34,14 @@ public:
     [[nodiscard]] tl::expected<Program, Error> compute(const ShaderCode& shader, const GroupShape& group,
                                                        std::span<const std::uint32_t> constants = {});
     /// A full-screen triangle whose fragments are blended into one colour target as source * 1 + target * source alpha.
+    /// `constants` are the fragment shader's specialization constants from id 0 on.
     [[nodiscard]] tl::expected<Program, Error> full_screen_blend(const ShaderCode& vertex, const ShaderCode& fragment,
-                                                                 VkFormat color_format);
+                                                                 VkFormat color_format,
+                                                                 std::span<const std::uint32_t> constants = {});
 
 private:
     struct Entry {
-        std::vector<std::uint32_t> key; ///< group shape and constants, or the colour format
+        std::vector<std::uint32_t> key; ///< group shape or the colour format, and constants
         const std::uint32_t* code = nullptr;
         VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
         Program program;

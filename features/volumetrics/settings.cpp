@@ -1,6 +1,7 @@
 #include "features/volumetrics/settings.hpp"
 
 #include "features/volumetrics/range_check.hpp"
+#include "shaders/common/airlight.h"
 
 namespace tyndall::volumetrics {
 namespace {
@@ -38,6 +39,7 @@ tl::expected<void, Error> validate(const Settings& settings) {
     }
     check.in_range("shadow.esm_size", settings.shadow.esm_size, 16, 2048);
     check.in_range("light_path_steps", settings.light_path_steps, 1, 64);
+    check.in_range("airlight.max_lights", settings.airlight.max_lights, 0, TYNDALL_AIRLIGHT_COUNT);
     check.in_range("visibility.taps", settings.visibility.taps, 1, 64);
     check.in_range("temporal.new_frame_weight", settings.temporal.new_frame_weight, 0.001F, 1.0);
     return check.result();

@@ -34,6 +34,7 @@ struct Settings {
     StorageFormat storage = StorageFormat::fp16;
     Integrator integrator = Integrator::exponential;
     VisibilitySettings visibility;
+    AirlightSettings airlight;
     LightPath light_path = LightPath::closed_form;
     std::uint32_t light_path_steps = 8; ///< of march along each way, [1, 64]
     bool error_estimate = false;        ///< the integrator's own, beside the image (StageResources::error_estimate)

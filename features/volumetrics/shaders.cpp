@@ -20,7 +20,8 @@
 #include "spirv/density_injection_fp32_m1_t1.h"
 #include "spirv/esm_blur.h"
 #include "spirv/esm_downsample.h"
-#include "spirv/fog_on_opaque.h"
+#include "spirv/fog_on_opaque_p0.h"
+#include "spirv/fog_on_opaque_p1.h"
 #include "spirv/froxel_lighting_fp16_s0_l00_h0.h"
 #include "spirv/froxel_lighting_fp16_s0_l00_h1.h"
 #include "spirv/froxel_lighting_fp16_s0_l10_h0.h"
@@ -104,7 +105,7 @@ constexpr ShaderBinding accumulation_bindings[] = {{0, uniform},       {1, stora
                                                    {3, storage_image}, {4, storage_image}, {5, storage_image}};
 constexpr ShaderBinding emitting_accumulation_bindings[] = {
     {0, uniform}, {1, storage_image}, {2, storage_image}, {3, storage_image}, {5, storage_image}};
-constexpr ShaderBinding fog_bindings[] = {{0, uniform}, {1, sampled}, {2, sampled}};
+constexpr ShaderBinding fog_bindings[] = {{0, uniform}, {1, sampled}, {2, sampled}, {3, sampled}, {4, storage_buffer}};
 
 // Numbered as in froxel_lighting.comp; which of them a variant has follows from its index below.
 constexpr ShaderBinding lighting_bindings[] = {
@@ -231,8 +232,9 @@ ShaderCode full_screen_shader() {
     return {"full screen", full_screen, {}};
 }
 
-ShaderCode fog_on_opaque_shader() {
-    return {"fog on opaque", fog_on_opaque, fog_bindings};
+ShaderCode fog_on_opaque_shader(bool local_shadow) {
+    const std::span<const std::uint32_t> code[] = {fog_on_opaque_p0, fog_on_opaque_p1};
+    return {"fog on opaque", code[local_shadow ? 1 : 0], std::span(fog_bindings).first(local_shadow ? 5 : 3)};
 }
 
 } // namespace tyndall::volumetrics

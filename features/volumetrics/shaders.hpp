@@ -44,6 +44,7 @@ struct LightingVariant {
 [[nodiscard]] ShaderCode froxel_lighting_shader(const LightingVariant& variant);
 [[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate, bool emission);
 [[nodiscard]] ShaderCode full_screen_shader();
-[[nodiscard]] ShaderCode fog_on_opaque_shader();
+/// `local_shadow`: one of the lights that it integrates casts shadows.
+[[nodiscard]] ShaderCode fog_on_opaque_shader(bool local_shadow);
 
 } // namespace tyndall::volumetrics

@@ -100,7 +100,8 @@ void VolumetricsGlue::after_shadow_maps(rg::GraphBuilder& graph, rg::Blackboard&
     keep_error(feature_->declare_after_shadow_maps(graph, shadow));
     if (feature_->volume()) {
         const volumetrics::VolumeResources& volume = *feature_->volume();
-        blackboard.put(engine::ScatteringVolumeImages{volume.accumulated, volume.in_scattered, volume.parameters});
+        blackboard.put(engine::ScatteringVolumeImages{volume.accumulated, volume.in_scattered, volume.parameters,
+                                                      volume.airlight_features});
     }
 }
 

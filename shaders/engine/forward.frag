@@ -38,8 +38,13 @@ layout(set = 0, binding = 5) uniform Clusters { LightClusters clusters; };
 layout(set = 0, binding = 6, std430) readonly restrict buffer Masks { uint masks[]; };
 #endif
 #if SCATTERING
-#include "common/scattering_volume.glsl"
-layout(set = 0, binding = 7) uniform Volume { ScatteringVolume volume; };
+layout(constant_id = 5) const uint airlight_features = 0u;
+#define AIRLIGHT_SKIPS 0
+#include "common/airlight.glsl"
+layout(set = 0, binding = 7) uniform Volume {
+    ScatteringVolume volume;
+    Airlights airlights;
+};
 layout(set = 0, binding = 8) uniform sampler2DArray accumulated;
 #endif
 
@@ -238,6 +243,11 @@ void main() {
     vec3 fog;
     vec3 transmittance;
     scattering_lookup(volume, accumulated, gl_FragCoord.xy * frame.size.zw, depth_m, fog, transmittance);
+    vec3 ray = -unit(frame.to_eye.xyz - frame.to_eye.w * surface_position);
+    PixelPath path = pixel_path(volume, gl_FragCoord.xy * frame.size.zw, depth_m, vec3(0.0), ray,
+                                interleaved_noise(gl_FragCoord.xy));
+    path.render_start = surface_position - path.length_m * ray;
+    ADD_AIRLIGHT(volume, airlights, path, fog)
     radiance = radiance * transmittance + fog;
 #endif
     radiance = min(radiance, vec3(frame.ray_origin.w));

@@ -1,11 +1,12 @@
 // A particle as a billboard parallel to the image, lit and fogged at its own depth. Vertices are pulled: number v belongs
 // to the particle in sorted place v / 6.
 //
-// SCATTERING 1: light and fog from a scattering volume. 0: no fog, light from the sun (SUN_SHADOW 1: through its
-// cascades), the local lights (LIGHTS 1; LOCAL_SHADOW 1: with their shadows) and the ambient, scattered alike in all
-// directions.
+// SCATTERING 1: light and fog from a scattering volume, and light of the lights that it leaves out. 0: no fog, light from
+// the sun (SUN_SHADOW 1: through its cascades), the local lights (LIGHTS 1) and the ambient, scattered alike in all
+// directions. LOCAL_SHADOW 1: local lights with their shadows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #include "engine/particle_interop.h"
 
@@ -14,8 +15,17 @@ layout(set = 0, binding = 1, std430) readonly restrict buffer Particles { GpuPar
 layout(set = 0, binding = 2, std430) readonly restrict buffer Keys { uvec2 keys[]; };
 
 #if SCATTERING
-#include "common/scattering_volume.glsl"
-layout(set = 0, binding = 4) uniform Volume { ScatteringVolume volume; };
+#if LOCAL_SHADOW
+#include "common/local_shadow.glsl"
+layout(set = 0, binding = 7) uniform sampler2DArray local_shadow_maps; // depth, nearest, clamps
+layout(set = 0, binding = 8, std430) readonly restrict buffer LocalShadows { LocalShadow local_shadows[]; };
+#endif
+layout(constant_id = 0) const uint airlight_features = 0u;
+#include "common/airlight.glsl"
+layout(set = 0, binding = 4) uniform Volume {
+    ScatteringVolume volume;
+    Airlights airlights;
+};
 layout(set = 0, binding = 5) uniform sampler2DArray accumulated;
 layout(set = 0, binding = 6) uniform sampler3D in_scattered;
 #else
@@ -58,11 +68,19 @@ void main() {
 
 #if SCATTERING
     // The corner itself is transparent: light half way to it stands for its quarter of the billboard.
-    vec2 light_uv = uv_of(frame.clip_from_view * vec4(centre + vec3(0.5 * turned, 0.0), 1.0));
+    vec3 light_place = centre + vec3(0.5 * turned, 0.0);
+    vec2 light_uv = uv_of(frame.clip_from_view * vec4(light_place, 1.0));
     vec3 light = in_scattered_lookup(volume, in_scattered, light_uv, depth_m);
+    ADD_LIGHT_OF_PARTICLE(volume, airlights, light_place, particle.position_radius.xyz, true_radius, light)
     vec3 fog;
     vec3 transmittance;
     scattering_lookup(volume, accumulated, uv_of(gl_Position), depth_m, fog, transmittance);
+    // Where the view is orthographic the eye of this corner is not render space's origin.
+    PixelPath path = pixel_path(volume, uv_of(gl_Position), depth_m, vec3(0.0), vec3(0.0), 0.5);
+    mat3 render_from_view = transpose(mat3(frame.view_from_render));
+    path.render_start = render_from_view * path.start;
+    path.render_ray = render_from_view * path.ray;
+    ADD_AIRLIGHT(volume, airlights, path, fog)
     radiance = particle.albedo_alpha.rgb * light * transmittance + fog;
 #else
     radiance = particle.albedo_alpha.rgb * particle_light(particle.position_radius.xyz, depth_m);

@@ -1,9 +1,20 @@
 // Opaque colour -> colour times transmittance plus in-scattered radiance, at each pixel's own depth. The blend unit does
 // it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog
-// of the whole ray, to infinity where the far plane lies there.
+// of the whole ray, to infinity where the far plane lies there. Lights that the froxels leave out are integrated here.
+//
+// LOCAL_SHADOW 1: one of them casts shadows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
+layout(constant_id = 0) const uint airlight_features = 0u;
+
+#if LOCAL_SHADOW
+#include "common/local_shadow.glsl"
+layout(set = 0, binding = 3) uniform sampler2DArray local_shadow_maps; // nearest, clamps
+layout(set = 0, binding = 4, std430) readonly restrict buffer LocalShadows { LocalShadow local_shadows[]; };
+#endif
+#include "common/airlight.glsl"
 #include "common/scattering_volume.glsl"
 #include "volumetrics/interop.h"
 
@@ -20,5 +31,10 @@ void main() {
     vec3 radiance;
     vec3 transmittance;
     scattering_lookup(u.volume, accumulated, uv, depth_m, radiance, transmittance);
+    vec3 ray = u.ray_u.xyz * uv.x + u.ray_v.xyz * uv.y + u.ray_0.xyz;
+    vec3 start = u.eye_u.xyz * uv.x + u.eye_v.xyz * uv.y + u.eye_0.xyz;
+    PixelPath path =
+        pixel_path(u.volume, uv, depth_m, start, normalize(ray), interleaved_noise(gl_FragCoord.xy));
+    ADD_AIRLIGHT(u.volume, u.airlights, path, radiance)
     fog = vec4(radiance, transmittance.r);
 }

@@ -36,6 +36,7 @@ layout(constant_id = 13) const uint light_changes = 2; // 0: since the frame bef
 layout(constant_id = 14) const bool air_weakens_light = false; // on its way to the froxel
 layout(constant_id = 15) const bool light_volumes = false;     // 15 and 16: see light_march.glsl
 layout(constant_id = 16) const uint light_octaves = 0u;
+layout(constant_id = 17) const bool leaves_out_lights = false; // which each pixel integrates along its ray
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
@@ -87,19 +88,29 @@ vec3 sun_scattering(RaySegment segment, float depth_m) {
 }
 
 #if LIGHTS
+// The bits of `mask`, that of lights 32 word and up, without those of lights that the froxels leave out.
+uint kept_lights(uint mask, uint word) {
+    if (!leaves_out_lights || word >= TYNDALL_AIRLIGHT_CANDIDATES / 32u) {
+        return mask;
+    }
+    return mask & u.kept_lights[word / 4u][word % 4u];
+}
+
 vec3 local_scattering(uvec3 froxel, RaySegment segment) {
     vec3 sum = vec3(0.0);
 #if LIGHTS >= 2
     uint first = cluster_index_of_froxel(clusters, froxel) * clusters.block.w;
     for (uint word = 0u; word < clusters.block.w; ++word) {
-        for (uint mask = masks[first + word]; mask != 0u; mask &= mask - 1u) {
+        for (uint mask = kept_lights(masks[first + word], word); mask != 0u; mask &= mask - 1u) {
             uint i = 32u * word + uint(findLSB(mask));
             ADD_SCATTERED_FROM_LIGHT(lights, i, segment, sum)
         }
     }
 #else
     for (uint i = 0u; i < u.frame.y; ++i) {
-        ADD_SCATTERED_FROM_LIGHT(lights, i, segment, sum)
+        if (kept_lights(1u << i % 32u, i / 32u) != 0u) {
+            ADD_SCATTERED_FROM_LIGHT(lights, i, segment, sum)
+        }
     }
 #endif
     return sum;

@@ -2,6 +2,7 @@
 #ifndef TYNDALL_SHADERS_VOLUMETRICS_INTEROP_H
 #define TYNDALL_SHADERS_VOLUMETRICS_INTEROP_H
 
+#include "../common/airlight.h"
 #include "../common/interop.h"
 #include "../common/light_clusters.h"
 #include "../common/lights.h"
@@ -13,8 +14,12 @@ TYNDALL_INTEROP_BEGIN
 // At most as many lights that have changed since the frame before.
 #define TYNDALL_LIGHT_CHANGE_COUNT 16
 
+// Only so many lights, the first ones, may be left out of the froxels.
+#define TYNDALL_AIRLIGHT_CANDIDATES 4096
+
 struct VolumetricParameters {
     ScatteringVolume volume; // first, so that those who only look up bind the same buffer
+    Airlights airlights;     // the lights that the froxels leave out; they look these up, too
     // The column of uv is the set of render-space points  z (ray_u u + ray_v v + ray_0) + (eye_u u + eye_v v + eye_0),
     // z the view depth, m; the second part is 0 for a perspective view.
     vec4 ray_u;
@@ -58,6 +63,7 @@ struct VolumetricParameters {
     vec4 esm_exponents;   // k of each cascade, per unit of shadow depth
     vec4 esm_size;        // x: texels of a side of the ESM; y: 1 / x; z: texels of a side of a cascade; w: 1 / z
     vec4 depth;           // view depth of device depth d: (x - d y) / (z + d w)
+    uvec4 kept_lights[TYNDALL_AIRLIGHT_CANDIDATES / 128]; // a bit a light: 0 where the froxels leave it out
     uvec4 frame;          // x: frames since the last cut; y: lights; z: local volumes; w: pairs of changed_lights
     GpuLocalVolume volumes[TYNDALL_LOCAL_VOLUME_COUNT]; // the first frame.z
     GpuLight changed_lights[2 * TYNDALL_LIGHT_CHANGE_COUNT]; // the first frame.w pairs: before, now

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/particles.hpp"
+#include "features/volumetrics/airlight.hpp"
 #include "features/volumetrics/parameters.hpp"
 #include "shaders/common/lights.h"
 #include "shaders/common/local_shadow.h"
@@ -35,8 +36,9 @@ ParticleEmitter resting(const glm::dvec3& position_m, float radius_m, float opac
 /// A homogeneous medium and the light in it, the same in every column.
 struct Fog {
     double extinction_per_m = 0.1;
-    double source = 3.0;       ///< radiance of an infinitely deep medium
-    double in_scattered = 2.0; ///< light per unit of albedo
+    double source = 3.0;                 ///< radiance of an infinitely deep medium
+    double in_scattered = 2.0;           ///< light per unit of albedo
+    float lamp_extinction_per_m = 1e-9F; ///< of the air that lamps shine in
 };
 
 struct Picture {
@@ -47,8 +49,8 @@ struct Picture {
     double surface_m = 1e9;                     ///< view depth of the opaque scene
     std::optional<Fog> fog = {};
     std::optional<float> shadow_depth = {}; ///< what the only cascade holds
-    std::vector<gpu::GpuLight> lights = {};
-    std::optional<double> caster_m = {}; ///< from the first light, in all directions: it alone casts a shadow
+    std::vector<gpu::GpuLight> lights = {}; ///< with fog those that its volume leaves out
+    std::optional<double> caster_m = {};    ///< from the first light, in all directions: it alone casts a shadow
 };
 
 constexpr glm::dvec4 background{10.0, 20.0, 30.0, 1.0};
@@ -63,7 +65,7 @@ protected:
 
 private:
     void add_fog(rg::GraphBuilder& graph, const Fog& fog, const engine::FrameView& view,
-                 engine::ParticleSurroundings& surroundings);
+                 const std::vector<gpu::GpuLight>& lamps, engine::ParticleSurroundings& surroundings);
     void add_shadow(rg::GraphBuilder& graph, float depth, engine::ParticleSurroundings& surroundings);
     void add_local_shadow(rg::GraphBuilder& graph, const gpu::GpuLight& light, double caster_m,
                           engine::ParticleSurroundings& surroundings);
@@ -79,18 +81,29 @@ private:
 };
 
 void ParticlesDrawTest::add_fog(rg::GraphBuilder& graph, const Fog& fog, const engine::FrameView& view,
-                                engine::ParticleSurroundings& surroundings) {
+                                const std::vector<gpu::GpuLight>& lamps, engine::ParticleSurroundings& surroundings) {
     const volumetrics::GridSettings grid{.width = 2, .height = 2, .slices = slices, .range_m = 40.0F, .shape_m = 10.0F};
     const double log_term = std::log1p(static_cast<double>(grid.range_m) / static_cast<double>(grid.shape_m));
-    const gpu::ScatteringVolume volume =
-        volumetrics::scattering_volume(grid, {.clip_from_view = view.clip_from_view}, 1.0F);
+    volumetrics::FrameInputs inputs;
+    inputs.settings.grid = grid;
+    inputs.camera.clip_from_view = view.clip_from_view;
+    inputs.medium.homogeneous.extinction_per_m = fog.lamp_extinction_per_m;
+    inputs.lights = lamps;
+    volumetrics::AirlightChoice choice;
+    for (std::uint32_t i = 0; i < lamps.size(); ++i) {
+        choice.lights.push_back(i);
+    }
+    gpu::VolumetricParameters parameters = volumetrics::volumetric_parameters(inputs, std::nullopt);
+    parameters.volume.scale.y = 1.0F;
+    parameters.airlights = volumetrics::airlights(inputs, choice);
     engine::ScatteringVolumeImages images{
         .accumulated = graph.create_image(
             "accumulated", {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {2, 2, 1}, .layers = slices + 1}),
         .in_scattered = graph.create_image(
             "in-scattered",
             {.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {2, 2, slices}, .type = VK_IMAGE_TYPE_3D}),
-        .parameters = import(graph, "volume", std::span<const gpu::ScatteringVolume>(&volume, 1)),
+        .parameters = import(graph, "volume", std::span<const gpu::VolumetricParameters>(&parameters, 1)),
+        .airlight_features = volumetrics::airlight_features(inputs, choice),
     };
     rg::PassBuilder pass = graph.add_pass("fog", rg::PassKind::transfer);
     pass.writes(images.accumulated, rg::Access::transfer_destination)
@@ -179,7 +192,7 @@ std::vector<glm::vec4> ParticlesDrawTest::draw(const std::vector<ParticleEmitter
         .writes(color, rg::Access::color_attachment, {.clear = rg::clear_color(b.r, b.g, b.b, b.a)});
     engine::ParticleSurroundings surroundings{.scene_depth = depth};
     if (picture.fog) {
-        add_fog(graph, *picture.fog, picture.view, surroundings);
+        add_fog(graph, *picture.fog, picture.view, picture.lights, surroundings);
     }
     if (picture.shadow_depth) {
         add_shadow(graph, *picture.shadow_depth, surroundings);
@@ -193,7 +206,7 @@ std::vector<glm::vec4> ParticlesDrawTest::draw(const std::vector<ParticleEmitter
     }
     rg::PassBuilder pass = graph.add_pass("transparents", rg::PassKind::graphics);
     pass.modifies(color, rg::Access::color_attachment).reads(depth, rg::Access::depth_attachment);
-    system->add_reads(pass, *draws, surroundings);
+    EXPECT_TRUE(system->add_reads(pass, *draws, surroundings));
     const engine::ParticleSystem& particles = *system;
     pass.executes([&particles, surroundings, draws = *draws, intervals = picture.intervals](rg::PassContext& ctx) {
         for (const std::uint32_t interval : intervals) {
@@ -303,6 +316,43 @@ TEST_F(ParticlesDrawTest, FogAndLightOfTheVolumeAtTheParticlesOwnDepth) {
     }
 }
 
+gpu::GpuLight lamp_at(const glm::vec3& position, float range_m) {
+    gpu::GpuLight light{};
+    light.position_range = glm::vec4(position, range_m);
+    light.intensity_type = glm::vec4(100.0F, 50.0F, 25.0F, 0.0F);
+    light.cone = glm::vec4(0.0F, 1.0F, 0.0F, 0.0F);
+    return light;
+}
+
+/// What the volume leaves out lights particles by itself, and shines in the air in front of them.
+TEST_F(ParticlesDrawTest, LampsThatTheVolumeLeavesOut) {
+    Picture picture{.fog = Fog{.extinction_per_m = 1e-9, .source = 0.0}};
+    picture.lights = {lamp_at({3.0F, 0.0F, -10.0F}, 20.0F), lamp_at({0.0F, -4.0F, -10.0F}, 20.0F)};
+    const auto irradiance = [](double d) { return (1.0 - std::pow(d / 20.0, 4.0)) / (d * d); };
+    const glm::dvec3 light = glm::dvec3(100, 50, 25) * ((irradiance(3.0) + irradiance(4.0)) / (4.0 * std::numbers::pi));
+    const ParticleEmitter particle = resting({0, 0, -10}, 0.3F, 0.6F);
+    expect_near(center({particle}, picture), over(background, albedo * (light + 2.0), 0.6), 1e-2);
+
+    // In the middle of a particle of this radius the mean of 1 / d^2 is 3 / radius^2.
+    picture.lights = {lamp_at({0.0F, 0.0F, -10.0F}, 20.0F)};
+    const ParticleEmitter large = resting({0, 0, -10}, 1.0F, 0.6F);
+    const glm::dvec4 inside = center({large}, picture);
+    EXPECT_GT(inside.r, 0.6 * 0.5 * 100.0 / (4.0 * std::numbers::pi) / (0.5 + 1.0 / 3.0) * 0.9);
+    EXPECT_LT(inside.r, 0.4 * 10.0 + 0.6 * 0.5 * (2.0 + 100.0 / (4.0 * std::numbers::pi) * 3.0) * 1.1);
+
+    // A black one in air so thin that light loses nothing: sigma / (4 pi h) times the angle under which the lamp sees
+    // the way to it.
+    picture.fog->lamp_extinction_per_m = 1e-5F;
+    picture.lights = {lamp_at({3.0F, 0.0F, -6.0F}, 1e4F)};
+    picture.lights[0].intensity_type *= 1e6F;
+    picture.lights[0].intensity_type.w = 0.0F;
+    ParticleEmitter black = particle;
+    black.albedo = glm::vec3(0.0F);
+    const double angle = std::atan(6.0 / 3.0) + std::atan(4.0 / 3.0);
+    const glm::dvec3 glow = glm::dvec3(100, 50, 25) * (1e6 * 1e-5 / (4.0 * std::numbers::pi * 3.0) * angle);
+    expect_near(center({black}, picture), over(background, glow, 0.6), 2e-2);
+}
+
 TEST_F(ParticlesDrawTest, SunReachesWhatItsCascadesLeaveLit) {
     const ParticleEmitter particle = resting({0, 0, -10}, 1.0F, 0.4F);
     Picture picture{.light = {.sun_illuminance_lux = {400.0F, 300.0F, 200.0F}}};
@@ -318,11 +368,7 @@ TEST_F(ParticlesDrawTest, LocalLightsAddUpAsFarAsTheirShadowMapsLeaveThem) {
     Picture picture;
     picture.shadow_depth = 1.0F;
     for (const float x : {3.0F, -4.0F}) {
-        gpu::GpuLight light{};
-        light.position_range = glm::vec4(x, 0.0F, -10.0F, 20.0F);
-        light.intensity_type = glm::vec4(100.0F, 50.0F, 25.0F, 0.0F);
-        light.cone = glm::vec4(0.0F, 1.0F, 0.0F, 0.0F);
-        picture.lights.push_back(light);
+        picture.lights.push_back(lamp_at({x, 0.0F, -10.0F}, 20.0F));
     }
     const auto irradiance = [](double d) { return (1.0 - std::pow(d / 20.0, 4.0)) / (d * d); };
     const glm::dvec3 light = glm::dvec3(100, 50, 25) * ((irradiance(3.0) + irradiance(4.0)) / (4.0 * std::numbers::pi));

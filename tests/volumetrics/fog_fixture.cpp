@@ -64,6 +64,7 @@ Scene plain_scene() {
     Scene scene;
     scene.inputs.settings.storage = StorageFormat::fp32;
     scene.inputs.settings.temporal = {.enabled = false, .jitter = false};
+    scene.inputs.settings.airlight.max_lights = 0; // all light is in the froxels, which the tests look into
     scene.inputs.camera.clip_from_view = test_projection();
     scene.inputs.color_format = VK_FORMAT_R32G32B32A32_SFLOAT;
     scene.depth_m = [](std::uint32_t, std::uint32_t) { return std::numeric_limits<double>::infinity(); };

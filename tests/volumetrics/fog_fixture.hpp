@@ -42,7 +42,7 @@ struct Scene {
 };
 
 /// A scene of the test camera at the world's origin: 160x90x64 froxels to 64 m, fp32, no jitter, no history; black, all
-/// sky.
+/// sky; no light is left out of the froxels.
 [[nodiscard]] Scene plain_scene();
 
 /// A scene in which all passes of the sun's shadow run, those of the exponential shadow map too. Cascades cover

@@ -141,6 +141,8 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"grid": {"curve_m": [4], "law": "linear"}})"),
               "grid.law must be \"curve\" where grid.curve_m is given.");
     EXPECT_EQ(refusal(R"({"shadow": {"esm_exponent": 0}})"), "shadow.esm_exponent must be between 1 and 1000, not 0.");
+    EXPECT_EQ(refusal(R"({"airlight": {"max_lights": 33}})"), "airlight.max_lights must be between 0 and 32, not 33.");
+    EXPECT_EQ(parse_fog_json(R"({"airlight": {"max_lights": 7}})")->settings.airlight.max_lights, 7U);
     EXPECT_EQ(refusal(R"({"visibility": {"taps": 0}})"), "visibility.taps must be between 1 and 64, not 0.");
     EXPECT_EQ(refusal(R"({"light_path_steps": 65})"), "light_path_steps must be between 1 and 64, not 65.");
     EXPECT_EQ(refusal(R"({"light_path": "marched"})"), R"(light_path must be one of "none", "closed_form", "march".)");
