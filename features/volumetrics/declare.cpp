@@ -61,21 +61,36 @@ void Feature::State::declare_density(rg::GraphBuilder& graph) {
         pass.writes(emitted, Access::storage_compute);
         frame->stages.emission = emitted;
     }
-    const std::array<rg::Image, 2> noise = frame->noise;
-    for (const rg::Image& image : noise) {
-        if (image.valid()) {
-            pass.reads(image, Access::sampled_compute);
+    struct Texture {
+        rg::Image image;
+        VkSampler sampler;
+    };
+    const bool map_repeats = frame->inputs.medium.map.edge == MapEdge::repeat;
+    std::array<Texture, 7> textures{{{frame->noise[0], shared.repeating},
+                                     {frame->noise[1], shared.repeating},
+                                     {frame->density_map, map_repeats ? shared.repeating : linear},
+                                     {frame->grids[0], linear},
+                                     {frame->grids[1], linear},
+                                     {frame->grids[2], linear},
+                                     {frame->grids[3], linear}}};
+    Texture any{};
+    for (const Texture& texture : textures) {
+        if (texture.image.valid()) {
+            pass.reads(texture.image, Access::sampled_compute);
+            any = texture;
         }
     }
-    pass.executes([=, parameters = frame->parameter_buffer, repeating = shared.repeating](PassContext& ctx) {
-        std::array<Binding, 5> bindings{ctx.uniform(0, parameters), ctx.storage(1, density)};
+    for (Texture& texture : textures) { // every declared binding must be written
+        texture = texture.image.valid() ? texture : any;
+    }
+    pass.executes([=, parameters = frame->parameter_buffer](PassContext& ctx) {
+        std::array<Binding, 3 + textures.size()> bindings{ctx.uniform(0, parameters), ctx.storage(1, density)};
         std::size_t count = 2;
         if (emitted.valid()) {
             bindings[count++] = ctx.storage(2, emitted);
         }
-        if (noise[0].valid()) {
-            bindings[count++] = ctx.sampled(3, noise[0], repeating);
-            bindings[count++] = ctx.sampled(4, noise[1], repeating);
+        for (std::uint32_t i = 0; i < textures.size() && any.image.valid(); ++i) {
+            bindings[count++] = ctx.sampled(3 + i, textures[i].image, textures[i].sampler);
         }
         run(ctx, dispatch, std::span(bindings).first(count));
     });

@@ -122,19 +122,27 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
     const Medium& medium = frame->inputs.medium;
     const glm::vec3 none(0.0F);
     const bool baked = is_baked(medium.noise);
+    const bool has_grids = !grids_of(medium).empty();
+    const bool textures = baked || has_grids || medium.map.texels;
+    if (auto made = make_textures(); !made) {
+        return made;
+    }
     if (auto made = baked ? shared.make_noise() : tl::expected<void, Error>(); !made) {
         return made;
     }
-    const std::array<std::uint32_t, 7> media{
+    const std::array<std::uint32_t, 9> media{
         medium.homogeneous.extinction_per_m > 0.0F || medium.homogeneous.emission_per_m != none,
         medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none,
         medium.noise.amplitude > 0.0F && !baked ? medium.noise.octaves : 0,
         is_perspective(frame->inputs.camera),
         frame->parameters.frame.z > 0,
         frame->depth_curve,
-        baked};
-    auto density = pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission, baked),
-                                     row_group(grid.width), std::span(media).first(baked ? 7 : 6));
+        baked,
+        medium.map.texels != nullptr,
+        has_grids};
+    auto density =
+        pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission, textures),
+                          row_group(grid.width), std::span(media).first(textures ? 9 : 6));
     if (!density) {
         return tl::unexpected(density.error());
     }
@@ -295,6 +303,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     if (is_baked(frame.inputs.medium.noise)) {
         state.declare_noise(graph);
     }
+    state.declare_textures(graph);
     state.declare_density(graph);
     if (is_clustered(frame.lights)) {
         state.declare_clustering(graph);
@@ -410,6 +419,9 @@ std::vector<VkImage> Feature::own_images() const {
         if (image) {
             images.push_back(image->handle());
         }
+    }
+    for (const auto& image : shared_->densities) {
+        images.push_back(image->handle());
     }
     return images;
 }

@@ -125,7 +125,7 @@ public:
     [[nodiscard]] std::span<const rg::ImportBinding> bindings(std::uint32_t view = 0) const;
     [[nodiscard]] std::span<const Omission> omissions(std::uint32_t view = 0) const;
 
-    /// Those that live as long as the feature.
+    /// Those that live as long as the feature: densities that the medium names stay on the device.
     [[nodiscard]] std::vector<VkImage> own_images() const;
 
 private:

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "features/volumetrics/airlight.hpp"
+#include "features/volumetrics/density_image.hpp"
 #include "features/volumetrics/feature.hpp"
 #include "features/volumetrics/host_buffers.hpp"
 #include "features/volumetrics/parameters.hpp"
@@ -33,6 +34,8 @@ struct FrameState {
     Program fog_on_opaque;
 
     std::array<rg::Image, 2> noise; ///< shape and detail, where the noise is made of them
+    rg::Image density_map;
+    std::array<rg::Image, LocalVolume::most_grids> grids;
     rg::Buffer parameter_buffer;
     rg::Buffer light_buffer;
     rg::Buffer compact_lights; ///< its first lights, for binding as uniforms
@@ -53,6 +56,8 @@ struct Feature::Shared {
     FeatureInfo info;
     /// The noise volumes and what bakes them; nothing where they are there already.
     [[nodiscard]] tl::expected<void, Error> make_noise();
+    [[nodiscard]] tl::expected<void, Error> make_density(const std::shared_ptr<const DensityTexels>& texels);
+    [[nodiscard]] std::size_t density_of(const std::shared_ptr<const DensityTexels>& texels) const; ///< its index
 
     VkSampler linear = VK_NULL_HANDLE;    ///< clamps to the edge
     VkSampler nearest = VK_NULL_HANDLE;   ///< clamps to the edge
@@ -60,6 +65,7 @@ struct Feature::Shared {
     Pipelines pipelines;
     std::array<std::unique_ptr<PersistentImage>, 2> noise; ///< shape and detail; null until they are needed
     std::array<Program, 2> noise_bake;
+    std::vector<std::unique_ptr<DensityImage>> densities; ///< of all texels that the host has ever given
 };
 
 /// One view.
@@ -77,6 +83,8 @@ struct Feature::State {
 
     // Passes, in order; declare.cpp.
     void declare_noise(rg::GraphBuilder& graph); ///< declare_noise.cpp
+    [[nodiscard]] tl::expected<void, Error> make_textures();
+    void declare_textures(rg::GraphBuilder& graph); ///< declare_textures.cpp
     void declare_density(rg::GraphBuilder& graph);
     void declare_clustering(rg::GraphBuilder& graph);
     [[nodiscard]] tl::expected<void, Error> declare_esm(rg::GraphBuilder& graph, const ShadowResources& shadow);

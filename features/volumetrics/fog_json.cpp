@@ -3,6 +3,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "features/volumetrics/fog_json_section.hpp"
@@ -77,6 +78,20 @@ std::string quote_words_for_no_number(std::string_view text) {
 
 } // namespace
 
+tl::expected<void, Error> set_density(Fog& fog, const DensityPicture& picture, std::uint32_t width,
+                                      std::uint32_t height, std::vector<std::uint8_t> values) {
+    if (height % picture.slices != 0) {
+        return tl::unexpected(Error{picture.key + " must have a height that is a multiple of its " +
+                                    std::to_string(picture.slices) + " slices, not " + std::to_string(height) + "."});
+    }
+    auto texels = DensityTexels::create({width, height / picture.slices, picture.slices}, std::move(values));
+    if (!texels) {
+        return tl::unexpected(Error{picture.key + ": " + texels.error().message});
+    }
+    (picture.volume ? fog.medium.volumes[*picture.volume].density : fog.medium.map.texels) = std::move(*texels);
+    return {};
+}
+
 tl::expected<Fog, Error> parse_fog_json(std::string_view given) {
     const std::string text = quote_words_for_no_number(given);
     SyntaxCheck syntax;
@@ -88,7 +103,7 @@ tl::expected<Fog, Error> parse_fog_json(std::string_view given) {
     std::optional<Error> error;
     {
         Section root(document, "", error);
-        read_medium(root, fog.medium, error);
+        read_medium(root, fog, error);
         read_settings(root, fog.settings, error);
     }
     if (error) {

@@ -21,6 +21,38 @@ void read_lobes(Section& phase, PhaseLobes& lobes, std::optional<Error>& error) 
     });
 }
 
+/// The picture at the key "image", which must be there.
+void read_picture(Section& s, DensityPicture picture, Fog& fog) {
+    picture.key = s.path_of("image");
+    if (!s.has("image")) {
+        s.complain(picture.key, "must name a PNG file beside the fog file");
+    }
+    s.read("image", picture.path);
+    fog.pictures.push_back(std::move(picture));
+}
+
+void read_map(Section& s, Fog& fog) {
+    DensityMap& map = fog.medium.map;
+    read_picture(s, {}, fog);
+    s.read("center_m", map.center_m);
+    s.read("size_m", map.size_m);
+    s.read("edge", map.edge, {{"clamp", MapEdge::clamp}, {"repeat", MapEdge::repeat}});
+    s.read("bottom_m", map.bottom_m);
+    s.read("top_m", map.top_m);
+    s.read("fade_m", map.fade_m);
+}
+
+void read_density(Section& s, std::size_t volume, Fog& fog) {
+    DensityPicture picture{.volume = volume};
+    s.read("slices", picture.slices);
+    if (picture.slices < 1 || picture.slices > DensityTexels::most) {
+        s.complain(s.path_of("slices"), "must be between 1 and " + std::to_string(DensityTexels::most) + ", not " +
+                                            std::to_string(picture.slices));
+        picture.slices = 1;
+    }
+    read_picture(s, std::move(picture), fog);
+}
+
 void read_volume(Section& s, LocalVolume& volume) {
     enum class Shape : std::uint8_t { box, ellipsoid, sphere };
     Shape shape = Shape::box;
@@ -72,7 +104,8 @@ void read_noise(Section& s, DensityNoise& noise) {
 
 } // namespace
 
-void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
+void read_medium(Section& root, Fog& fog, std::optional<Error>& error) {
+    Medium& medium = fog.medium;
     subsection(root, "medium", error, [&](Section& section) {
         subsection(section, "homogeneous", error, [&](Section& s) {
             s.read("extinction_per_m", medium.homogeneous.extinction_per_m);
@@ -87,8 +120,11 @@ void read_medium(Section& root, Medium& medium, std::optional<Error>& error) {
             s.read("falloff_per_m", medium.height.falloff_per_m);
         });
         subsection(section, "noise", error, [&](Section& s) { read_noise(s, medium.noise); });
-        elements(section, "volumes", LocalVolume::most, error,
-                 [&](Section& s, std::uint32_t) { read_volume(s, medium.volumes.emplace_back()); });
+        subsection(section, "map", error, [&](Section& s) { read_map(s, fog); });
+        elements(section, "volumes", LocalVolume::most, error, [&](Section& s, std::uint32_t i) {
+            read_volume(s, medium.volumes.emplace_back());
+            subsection(s, "density", error, [&](Section& density) { read_density(density, i, fog); });
+        });
     });
     subsection(root, "phase", error, [&](Section& s) {
         s.read("g", medium.phase_g);

@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
 #include "features/volumetrics/error.hpp"
-#include "features/volumetrics/medium.hpp"
-#include "features/volumetrics/settings.hpp"
+#include "features/volumetrics/fog_json.hpp"
 
 namespace tyndall::volumetrics {
 
@@ -81,6 +81,30 @@ public:
             } else {
                 complain(path_of(key), "must be a whole number that is not negative");
             }
+        }
+    }
+    void read(const char* key, std::string& value) {
+        if (const Json* json = find(key)) {
+            const auto* text = json->get_ptr<const Json::string_t*>();
+            if (text != nullptr && !text->empty()) {
+                value = *text;
+            } else {
+                complain(path_of(key), "must be a text that is not empty");
+            }
+        }
+    }
+    void read(const char* key, glm::vec2& value) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        if (!json->is_array() || json->size() != 2) {
+            complain(path_of(key), "must be an array of 2 numbers");
+            return;
+        }
+        for (int i = 0; i < 2; ++i) {
+            value[i] =
+                number((*json)[static_cast<std::size_t>(i)], path_of(key) + "[" + std::to_string(i) + "]", value[i]);
         }
     }
     void read(const char* key, glm::vec3& value) {
@@ -245,7 +269,7 @@ std::uint32_t elements(Section& parent, const char* key, std::uint32_t most, std
 }
 
 /// The media, phase function and ambient light; the rest.
-void read_medium(Section& root, Medium& medium, std::optional<Error>& error);
+void read_medium(Section& root, Fog& fog, std::optional<Error>& error);
 void read_settings(Section& root, Settings& settings, std::optional<Error>& error);
 
 } // namespace tyndall::volumetrics

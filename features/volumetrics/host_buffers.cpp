@@ -12,7 +12,8 @@ Error buffer_error(VkResult result) {
             std::to_string(static_cast<int>(result)) + ")."};
 }
 
-/// The first type among `type_bits` that the host sees without flushing; -1 if none.
+} // namespace
+
 int host_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t type_bits) {
     const VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
@@ -22,8 +23,6 @@ int host_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32
     }
     return -1;
 }
-
-} // namespace
 
 VkResult HostBuffers::make_buffer(VkDeviceSize size_bytes, std::span<const std::uint32_t> queue_families,
                                   VkBuffer& buffer) {

@@ -14,6 +14,9 @@
 
 namespace tyndall::volumetrics {
 
+/// The first type among `type_bits` that the host sees without flushing; -1 if none.
+[[nodiscard]] int host_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t type_bits);
+
 class HostBuffers {
 public:
     struct Slot {

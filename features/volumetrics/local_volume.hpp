@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+
+#include "features/volumetrics/density_texels.hpp"
 
 namespace tyndall::volumetrics {
 
@@ -22,6 +25,7 @@ enum class VolumeBlend : std::uint8_t {
 /// inside the product of min(1, (1 - |q_i|) / edge) over the axes of a box, min(1, (1 - |q|) / edge) for an ellipsoid.
 struct LocalVolume {
     static constexpr std::uint32_t most = 16;
+    static constexpr std::uint32_t most_grids = 4;
 
     VolumeShape shape = VolumeShape::box;
     VolumeBlend blend = VolumeBlend::add;
@@ -33,6 +37,9 @@ struct LocalVolume {
     float factor = 1.0F;                        ///< of multiply, [0, 1e3]
     glm::vec3 albedo{1.0F};                     ///< each in [0, 1]; of add and max
     glm::vec3 emission_per_m{0.0F};             ///< cd/m^3, each in [0, 1e9]; of add and max
+    /// By which the weight is multiplied, stretched over the shape from -1 to 1 along its own axes; null: none. At most
+    /// `most_grids` different ones in all.
+    std::shared_ptr<const DensityTexels> density;
 
     friend bool operator==(const LocalVolume&, const LocalVolume&) = default;
 };

@@ -50,6 +50,8 @@ void check_volumes(const Medium& medium, RangeCheck& check) {
         check.in_range(key + "albedo", volume.albedo, 0.0, 1.0);
         check.in_range(key + "emission_per_m", volume.emission_per_m, 0.0, 1e9);
     }
+    check.in_range("The number of different densities of medium.volumes", static_cast<double>(grids_of(medium).size()),
+                   0.0, LocalVolume::most_grids);
     check.in_range("The extinction that medium.volumes can add up to", extinction_bound(medium), 0.0, 1e9);
     check.in_range("The emission that medium.volumes can add up to", emission_bound(medium), 0.0, 1e12);
 }
@@ -85,6 +87,21 @@ bool is_directed(const Medium& medium) {
     const glm::vec3 none(0.0F);
     const auto& sh = medium.ambient_sh_1;
     return mean_cosine(phase_of(medium)) != 0.0 && (sh[0] != none || sh[1] != none || sh[2] != none);
+}
+
+std::vector<std::shared_ptr<const DensityTexels>> grids_of(const Medium& medium) {
+    std::vector<std::shared_ptr<const DensityTexels>> grids;
+    for (const LocalVolume& volume : medium.volumes) {
+        if (volume.density && has_inside(volume) &&
+            std::find(grids.begin(), grids.end(), volume.density) == grids.end()) {
+            grids.push_back(volume.density);
+        }
+    }
+    return grids;
+}
+
+float mean_of_map(const Medium& medium) {
+    return medium.map.texels ? static_cast<float>(medium.map.texels->mean()) : 1.0F;
 }
 
 float extinction_bound(const Medium& medium) {
@@ -161,6 +178,7 @@ tl::expected<void, Error> validate(const Medium& medium) {
     check.in_range("medium.height.base_height_m", medium.height.base_height_m, -1e6, 1e6);
     check.in_range("medium.height.falloff_per_m", medium.height.falloff_per_m, 0.0, 1e3);
     check_noise(medium.noise, check);
+    check_map(medium.map, check);
     check.in_range("phase.g", medium.phase_g, -0.999F, 0.999F);
     check.in_range("ambient.radiance", medium.ambient_radiance, 0.0, 1e9);
     check_lobes(medium.phase_lobes, check);

@@ -167,8 +167,9 @@ gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameter
     const Medium& medium = frame.medium;
     const glm::dmat3 view_from_render(frame.camera.view_from_render);
     gpu::FarField far{};
-    far.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m);
-    far.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m);
+    const float mean = mean_of_map(medium);
+    far.homogeneous = glm::vec4(medium.homogeneous.albedo, mean * medium.homogeneous.extinction_per_m);
+    far.height = glm::vec4(medium.height.albedo, mean * medium.height.extinction_per_m);
     far.up = glm::vec4(view_from_render * glm::dvec3(0.0, 1.0, 0.0),
                        frame.camera.origin_m.y - static_cast<double>(medium.height.base_height_m));
     far.sun_illuminance.w = medium.height.falloff_per_m;
@@ -186,6 +187,24 @@ gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameter
     return far;
 }
 
+void write_map(const FrameInputs& frame, gpu::VolumetricParameters& u) {
+    const DensityMap& map = frame.medium.map;
+    if (!map.texels) {
+        return;
+    }
+    for (int i = 0; i < 2; ++i) {
+        const auto size_m = static_cast<double>(map.size_m[i]);
+        const double from_center_m = frame.camera.origin_m[2 * i] - static_cast<double>(map.center_m[i]);
+        const double place = 0.5 + from_center_m / size_m;
+        u.map_place[i] = static_cast<float>(1.0 / size_m);
+        u.map_place[i + 2] = static_cast<float>(map.edge == MapEdge::repeat ? place - std::floor(place) : place);
+    }
+    const glm::vec2 texels_per_m = glm::vec2(map.texels->size()) / map.size_m;
+    u.map_profile =
+        glm::vec4(static_cast<double>(map.bottom_m) - frame.camera.origin_m.y, 1.0F / map.fade_m,
+                  static_cast<double>(map.top_m) - frame.camera.origin_m.y, std::max(texels_per_m.x, texels_per_m.y));
+}
+
 /// Of the march toward the sun: each step is so much longer than the one before, and no longer than so many noise cells
 /// in the mean.
 constexpr float light_step_growth = 1.3F;
@@ -194,6 +213,7 @@ constexpr float light_step_cells = 1.0F;
 /// The volumes that are not empty; their number.
 std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float emission_scale,
                             gpu::VolumetricParameters& u) {
+    const auto grids = grids_of(frame.medium);
     std::uint32_t count = 0;
     for (const LocalVolume& volume : frame.medium.volumes) {
         const glm::dvec3 half_size_m(volume.half_size_m);
@@ -212,6 +232,10 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float
         out.albedo_amount =
             glm::vec4(volume.albedo, multiplies ? volume.factor : volume.extinction_per_m * density_scale);
         out.emission = glm::vec4(volume.emission_per_m * emission_scale, 0.0F);
+        if (volume.density) {
+            const auto which = std::find(grids.begin(), grids.end(), volume.density) - grids.begin() + 1;
+            out.grid = glm::vec4(volume.density->size(), which);
+        }
         out.edge_shape_blend = glm::vec4(volume.edge > 0.0F ? 1.0F / volume.edge : 0.0F, volume.shape, volume.blend, 0);
     }
     return count;
@@ -262,8 +286,9 @@ std::size_t write_changes(const FrameInputs& frame, const std::optional<FrameMem
 
 glm::vec4 air_of(const FrameInputs& frame) {
     const Medium& medium = frame.medium;
+    const float mean = mean_of_map(medium);
     return weakens_light(medium, frame.settings)
-               ? glm::vec4(medium.homogeneous.extinction_per_m, medium.height.extinction_per_m,
+               ? glm::vec4(mean * medium.homogeneous.extinction_per_m, mean * medium.height.extinction_per_m,
                            medium.height.falloff_per_m, medium.height.base_height_m)
                : glm::vec4(0.0F);
 }
@@ -415,6 +440,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     u.air = air_of(frame);
     u.air.w = static_cast<float>(frame.camera.origin_m.y - static_cast<double>(u.air.w));
     write_noise(frame, u);
+    write_map(frame, u);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);
     u.emission_scale = glm::vec4(emission_scale, density_scale / emission_scale * radiance_scale, 0.0F, 0.0F);
     write_phase(medium, u);

@@ -91,9 +91,12 @@ constexpr VkDescriptorType storage_image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType storage_buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
 // Without emission (2), without textures.
-constexpr ShaderBinding density_bindings[] = {
-    {0, uniform}, {1, storage_image}, {2, storage_image}, {3, sampled}, {4, sampled}};
-constexpr ShaderBinding dark_density_bindings[] = {{0, uniform}, {1, storage_image}, {3, sampled}, {4, sampled}};
+constexpr ShaderBinding density_bindings[] = {{0, uniform}, {1, storage_image}, {2, storage_image}, {3, sampled},
+                                              {4, sampled}, {5, sampled},       {6, sampled},       {7, sampled},
+                                              {8, sampled}, {9, sampled}};
+constexpr ShaderBinding dark_density_bindings[] = {{0, uniform}, {1, storage_image}, {3, sampled},
+                                                   {4, sampled}, {5, sampled},       {6, sampled},
+                                                   {7, sampled}, {8, sampled},       {9, sampled}};
 constexpr ShaderBinding bake_bindings[] = {{0, storage_buffer}};
 constexpr ShaderBinding clustering_bindings[] = {
     {0, uniform}, {1, uniform}, {2, storage_buffer}, {3, storage_buffer}, {4, storage_buffer}};

@@ -9,6 +9,7 @@
 #include "engine/file_io.hpp"
 #include "engine/gltf.hpp"
 #include "engine/lights.hpp"
+#include "samples/precision/fog_file.hpp"
 #include "samples/precision/hash.hpp"
 
 namespace tyndall::samples {
@@ -67,9 +68,15 @@ reference::Surroundings to_surroundings(const std::optional<engine::DirectionalL
             .ground = glm::dvec3(background.ground)};
 }
 
-std::string identity_of(const engine::Scene& scene, std::string_view fog_json) {
+std::string identity_of(const engine::Scene& scene, std::span<const std::byte> fog_json,
+                        const volumetrics::Medium& medium) {
     Hash hash;
     hash.add(fog_json);
+    std::vector<std::shared_ptr<const volumetrics::DensityTexels>> densities = volumetrics::grids_of(medium);
+    densities.push_back(medium.map.texels);
+    for (const auto& texels : densities) {
+        hash.add(std::as_bytes(texels ? std::span(texels->values()) : std::span<const std::uint8_t>()));
+    }
     for (const engine::Primitive& primitive : scene.primitives) {
         hash.add(std::as_bytes(std::span(primitive.positions)));
         hash.add(std::as_bytes(std::span(primitive.indices)));
@@ -102,10 +109,9 @@ tl::expected<PrecisionScene, std::string> load_precision_scene(const std::filesy
     if (!fog_text) {
         return tl::unexpected(fog_text.error().message);
     }
-    const std::string_view fog_json(reinterpret_cast<const char*>(fog_text->data()), fog_text->size());
-    auto fog = volumetrics::parse_fog_json(fog_json);
+    auto fog = load_fog_file(fog_path);
     if (!fog) {
-        return tl::unexpected(fog_path.string() + ": " + fog.error().message);
+        return tl::unexpected(fog.error());
     }
     if (loaded->cameras.front().orthographic) {
         return tl::unexpected(path.string() + ": the first camera must be a perspective one");
@@ -132,7 +138,7 @@ tl::expected<PrecisionScene, std::string> load_precision_scene(const std::filesy
         scene.lights.push_back(to_reference(light));
     }
     scene.surroundings = to_surroundings(roles.sun);
-    scene.identity = identity_of(*loaded, fog_json);
+    scene.identity = identity_of(*loaded, *fog_text, scene.fog.medium);
     scene.drawn = std::move(*loaded);
     return scene;
 }

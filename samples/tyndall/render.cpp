@@ -10,6 +10,7 @@
 #include "rendergraph/explain.hpp"
 #include "rendergraph/json.hpp"
 #include "rendergraph/report.hpp"
+#include "samples/precision/fog_file.hpp"
 #include "samples/tyndall/arguments.hpp"
 #include "samples/tyndall/frame_loop.hpp"
 #include "samples/tyndall/progress.hpp"
@@ -99,15 +100,11 @@ Expected<std::optional<volumetrics::Fog>> load_fog(const RenderArguments& argume
     if (arguments.no_fog || !path) {
         return std::nullopt;
     }
-    const Expected<std::string> text = read_text(*path);
-    if (!text) {
-        return tl::unexpected(text.error());
-    }
-    tl::expected<volumetrics::Fog, volumetrics::Error> fog = volumetrics::parse_fog_json(*text);
+    tl::expected<volumetrics::Fog, std::string> fog = load_fog_file(*path);
     if (!fog) {
-        return bad_input(path->string() + ": " + fog.error().message);
+        return bad_input(fog.error());
     }
-    return *fog;
+    return std::move(*fog);
 }
 
 Expected<std::vector<engine::ParticleEmitter>> load_particles(const RenderArguments& arguments) {

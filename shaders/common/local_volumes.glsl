@@ -59,6 +59,7 @@ float edge_weight(GpuLocalVolume volume, vec3 q) {
 
 // Blends the volume into `medium` (scattering rgb, extinction a) and `emission`, means over the slice from `near` to
 // `far`. Inside the overlap the weight is its mean there, of soft edges by Gauss-Legendre with three nodes.
+// Who defines DENSITY_GRIDS, a bool, has mean_grid_weight for volumes with a grid.
 void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 medium, inout vec3 emission) {
     vec3 a = shape_space(volume, near);
     vec3 d = shape_space(volume, far) - a;
@@ -74,6 +75,11 @@ void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 m
         weight = (5.0 * edge_weight(volume, a + (middle - node) * d) + 8.0 * edge_weight(volume, a + middle * d) +
                   5.0 * edge_weight(volume, a + (middle + node) * d)) / 18.0;
     }
+#ifdef DENSITY_GRIDS
+    if (DENSITY_GRIDS && volume.grid.w > 0.0) {
+        weight = mean_grid_weight(volume, a + overlap.x * d, part * d);
+    }
+#endif
     float amount = weight * volume.albedo_amount.w;
     vec4 own = vec4(volume.albedo_amount.rgb, 1.0) * amount;
     float blend = volume.edge_shape_blend.z;

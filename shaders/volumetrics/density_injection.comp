@@ -8,7 +8,6 @@ layout(constant_id = 8) const bool has_depth_curve = false;
 #define DEPTH_CURVE has_depth_curve
 
 #include "common/height_density.glsl"
-#include "common/local_volumes.glsl"
 #include "common/noise.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
@@ -30,9 +29,14 @@ layout(set = 0, binding = 2, VOLUME_FORMAT) uniform writeonly restrict image3D e
 layout(set = 0, binding = 3) uniform sampler3D noise_shape; // these repeat in every direction
 layout(set = 0, binding = 4) uniform sampler3D noise_detail;
 layout(constant_id = 9) const bool has_baked_noise = false;
+layout(constant_id = 10) const bool has_map = false;
+layout(constant_id = 11) const bool has_grids = false;
+#define DENSITY_GRIDS has_grids
+#include "volumetrics/density_textures.glsl"
 #else
 const bool has_baked_noise = false;
 #endif
+#include "common/local_volumes.glsl"
 
 float octave_noise_factor(vec3 render_position, float froxel_m) {
     vec3 p = render_position * u.noise_cells.x + u.noise_origin.xyz;
@@ -100,6 +104,13 @@ void main() {
         medium *= factor;
         emission *= factor;
     }
+#if TEXTURES
+    if (has_map) {
+        float kept = mean_map_density(eye + ray * near_m, eye + ray * far_m);
+        medium *= kept;
+        emission *= kept;
+    }
+#endif
     imageStore(density, froxel, storable(medium));
 #if EMISSION
     imageStore(emitted, froxel, storable(vec4(emission, 0.0)));

@@ -43,6 +43,8 @@ struct VolumetricParameters {
                           // Volumes: x: periods of the shape per metre
     vec4 noise_detail;    // xyz: the camera in periods of the detail, its wind included, in [0, 1); w: periods per metre
     vec4 noise_cover;     // cover by the shape's value s: x s + y; z: what the detail takes at most; w: 1 / mean
+    vec4 map_place;       // the density map's place of the render-space point p: p.xz xy + zw
+    vec4 map_profile;     // x: bottom, render space, m; y: 1 / fade, 1/m; z: top; w: texels per metre, the more of x and z
     vec4 density_scale;   // x: stored coefficients are true ones (1/m) times x; y: 1 / x; zw 0
     vec4 march;           // see common/light_march.glsl
     vec4 emission_scale;  // x: stored emission is the true one (cd/m^3) times x; y: stored emission times y has the unit of

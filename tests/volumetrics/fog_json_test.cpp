@@ -203,6 +203,56 @@ TEST(FogJson, ImpossibleNoisesNameKeyAndRange) {
               "medium.noise.detail_wind_m_s[2] must be between -1000 and 1000, not 2000.");
 }
 
+TEST(FogJson, NamesPicturesOfDensities) {
+    auto fog = parse_fog_json(R"({"medium": {
+        "map": {"image": "ground.png", "center_m": [1, 2], "size_m": [30, 40], "edge": "repeat", "bottom_m": -1,
+                "top_m": 5, "fade_m": 2},
+        "volumes": [{}, {"density": {"image": "smoke.png", "slices": 3}}]}})");
+    ASSERT_TRUE(fog) << fog.error().message;
+    const DensityMap& map = fog->medium.map;
+    EXPECT_EQ(map.center_m, glm::vec2(1.0F, 2.0F));
+    EXPECT_EQ(map.size_m, glm::vec2(30.0F, 40.0F));
+    EXPECT_EQ(map.edge, MapEdge::repeat);
+    EXPECT_EQ(map.bottom_m, -1.0F);
+    EXPECT_EQ(map.top_m, 5.0F);
+    EXPECT_EQ(map.fade_m, 2.0F);
+    ASSERT_EQ(fog->pictures.size(), 2U);
+    EXPECT_EQ(fog->pictures[0].path, "ground.png");
+    EXPECT_EQ(fog->pictures[0].key, "medium.map.image");
+    EXPECT_EQ(fog->pictures[1].key, "medium.volumes[1].density.image");
+    EXPECT_EQ(fog->pictures[1].volume, 1U);
+    const auto set = [&](std::size_t picture, std::uint32_t width, std::uint32_t height) {
+        const auto result =
+            set_density(*fog, fog->pictures[picture], width, height, std::vector<std::uint8_t>(width * height, 51));
+        return result ? "set" : result.error().message;
+    };
+    EXPECT_EQ(set(0, 4, 2), "set");
+    EXPECT_EQ(set(1, 2, 7),
+              "medium.volumes[1].density.image must have a height that is a multiple of its 3 slices, not 7.");
+    EXPECT_EQ(set(1, 2, 6), "set");
+    EXPECT_EQ(map.texels->size(), glm::uvec3(4, 2, 1));
+    EXPECT_DOUBLE_EQ(map.texels->mean(), 0.2);
+    EXPECT_EQ(fog->medium.volumes[1].density->size(), glm::uvec3(2, 2, 3));
+}
+
+TEST(FogJson, ImpossibleDensitiesNameKeyAndRange) {
+    const auto map = [](const std::string& keys) { return refusal(R"({"medium": {"map": {)" + keys + "}}}"); };
+    const std::string image = R"("image": "a.png", )";
+    EXPECT_EQ(map(""), "medium.map.image must name a PNG file beside the fog file.");
+    EXPECT_EQ(map(R"("image": 3)"), "medium.map.image must be a text that is not empty.");
+    EXPECT_EQ(map(image + R"("sise_m": [1, 1])"), "medium.map.sise_m is not a key of the fog file.");
+    EXPECT_EQ(map(image + R"("size_m": [1])"), "medium.map.size_m must be an array of 2 numbers.");
+    EXPECT_EQ(map(image + R"("size_m": [1, 0])"), "medium.map.size_m[1] must be between 0.01 and 1e+06, not 0.");
+    EXPECT_EQ(map(image + R"("center_m": [NaN, 0])"),
+              "medium.map.center_m[0] must be between -1e+06 and 1e+06, not nan.");
+    EXPECT_EQ(map(image + R"("bottom_m": 3, "top_m": 2)"),
+              "medium.map.top_m (no less than bottom_m) must be between 3 and 1e+06, not 2.");
+    EXPECT_EQ(map(image + R"("fade_m": 0)"), "medium.map.fade_m must be between 0.01 and 1e+06, not 0.");
+    EXPECT_EQ(map(image + R"("edge": "mirror")"), "medium.map.edge must be one of \"clamp\", \"repeat\".");
+    EXPECT_EQ(refusal(R"({"medium": {"volumes": [{"density": {"image": "a.png", "slices": 0}}]}})"),
+              "medium.volumes[0].density.slices must be between 1 and 2048, not 0.");
+}
+
 TEST(FogJson, ReadsLocalVolumes) {
     const auto fog = parse_fog_json(R"({"medium": {"volumes": [
         {"shape": "box", "center_m": [1, 2, 3], "half_size_m": [4, 5, 6], "rotation": [0, 0.6, 0, 0.8], "edge": 0.25,

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "features/volumetrics/reference/density_texels.hpp"
+
 namespace tyndall::volumetrics::reference {
 namespace {
 
@@ -41,10 +43,21 @@ bool has_inside(const LocalVolume& volume) {
     return std::min({volume.half_size_m.x, volume.half_size_m.y, volume.half_size_m.z}) > 0.0F;
 }
 
+glm::dvec3 way_in_grid(const LocalVolume& volume, const glm::dvec3& direction) {
+    return 0.5 * in_shape(volume, direction);
+}
+
+glm::dvec3 place_in_grid(const LocalVolume& volume, const glm::dvec3& point) {
+    return 0.5 + way_in_grid(volume, point - glm::dvec3(volume.center_m));
+}
+
 Coefficients blended(const LocalVolume& volume, const Coefficients& before, const glm::dvec3& point) {
-    const double w = weight(volume, point);
+    double w = weight(volume, point);
     if (!(w > 0.0)) {
         return before;
+    }
+    if (volume.density) {
+        w *= density_at(*volume.density, place_in_grid(volume, point), false);
     }
     const double amount = w * static_cast<double>(volume.extinction_per_m);
     const Coefficients own{amount * glm::dvec3(volume.albedo), glm::dvec3(amount),

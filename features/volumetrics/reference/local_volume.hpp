@@ -21,6 +21,10 @@ struct Coefficients {
 /// `before` with the volume blended in at a point.
 [[nodiscard]] Coefficients blended(const LocalVolume& volume, const Coefficients& before, const glm::dvec3& point);
 
+/// A point of the world, and a direction, in a grid that fills the volume's shape from 0 to 1.
+[[nodiscard]] glm::dvec3 place_in_grid(const LocalVolume& volume, const glm::dvec3& point);
+[[nodiscard]] glm::dvec3 way_in_grid(const LocalVolume& volume, const glm::dvec3& direction);
+
 /// Appends the distances within `part` between which the volume's weight is smooth. Not sorted.
 void add_volume_breaks(const LocalVolume& volume, const Ray& ray, Interval part, std::vector<double>& breaks);
 

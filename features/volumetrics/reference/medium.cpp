@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "features/volumetrics/reference/density_texels.hpp"
 #include "features/volumetrics/reference/noise.hpp"
 #include "features/volumetrics/reference/noise_volumes.hpp"
 #include "features/volumetrics/reference/quadrature.hpp"
@@ -91,7 +92,7 @@ Coefficients Fog::changed(Coefficients before, const glm::dvec3& point) const {
     for (const LocalVolume& volume : volumes_) {
         before = blended(volume, before, point);
     }
-    const double factor = noise_factor(point);
+    const double factor = noise_factor(point) * map_density(medium_->map, point);
     return {factor * before.scattering, factor * before.extinction, factor * before.emission};
 }
 
@@ -226,9 +227,30 @@ void Fog::add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks)
     for (const LocalVolume& volume : volumes_) {
         add_volume_breaks(volume, ray, part, breaks);
     }
+    const DensityMap& map = medium_->map;
+    if (map.texels && ray.direction.y != 0.0) {
+        for (const float height_m : {map.bottom_m, map.bottom_m + map.fade_m, map.top_m - map.fade_m, map.top_m}) {
+            add((static_cast<double>(height_m) - ray.origin.y) / ray.direction.y);
+        }
+    }
 }
 
 void Fog::add_seams(const Ray& ray, Interval part, std::vector<double>& seams) const {
+    const auto add_texels = [&](const DensityTexels& texels, const glm::dvec3& place, const glm::dvec3& way) {
+        const glm::dvec3 size(texels.size());
+        add_lattice_crossings(place * size - 0.5, way * size, part, most_crossings, seams);
+    };
+    for (const LocalVolume& volume : volumes_) {
+        if (volume.density) {
+            add_texels(*volume.density, place_in_grid(volume, ray.origin), way_in_grid(volume, ray.direction));
+        }
+    }
+    if (const DensityMap& map = medium_->map; map.texels) {
+        const glm::dvec3 size_m(map.size_m.x, map.size_m.y, 1.0);
+        const glm::dvec3 from(ray.origin.x - static_cast<double>(map.center_m.x),
+                              ray.origin.z - static_cast<double>(map.center_m.y), 0.0);
+        add_texels(*map.texels, from / size_m + 0.5, glm::dvec3(ray.direction.x, ray.direction.z, 0.0) / size_m);
+    }
     const DensityNoise& noise = medium_->noise;
     if (noise.amplitude > 0.0F && noise.kind == NoiseKind::perlin_worley) {
         // Between planes through the texels' centres the volumes are polynomials.

@@ -39,9 +39,11 @@ public:
 
     [[nodiscard]] bool emits() const;
 
-    /// Whether `closed_optical_depth` is the optical depth; else it is its mean over all noises, without the local
-    /// volumes.
-    [[nodiscard]] bool is_closed() const { return medium_->noise.amplitude == 0.0F && volumes_.empty(); }
+    /// Whether `closed_optical_depth` is the optical depth; else it is its mean over all noises, without local
+    /// volumes and map.
+    [[nodiscard]] bool is_closed() const {
+        return medium_->noise.amplitude == 0.0F && volumes_.empty() && !medium_->map.texels;
+    }
 
     /// Optical depth without noise and local volumes of the ray's first `length_m`; infinite where that is and the fog
     /// does not end.
@@ -66,14 +68,14 @@ public:
     /// Appends the distances within `part` between which the mean density is smooth and changes by no more than a few
     /// orders of magnitude. Not sorted.
     void add_breaks(const Ray& ray, Interval part, std::vector<double>& breaks) const;
-    /// And those at which the noise's third derivative jumps.
+    /// And those at which a higher derivative of noise or textures jumps.
     void add_seams(const Ray& ray, Interval part, std::vector<double>& seams) const;
 
 private:
     [[nodiscard]] double noise_factor(const glm::dvec3& point) const;
     [[nodiscard]] double height_profile(const glm::dvec3& point) const; ///< 1 at the base
 
-    /// `before` with volumes and noise.
+    /// `before` with volumes, noise and map.
     [[nodiscard]] Coefficients changed(Coefficients before, const glm::dvec3& point) const;
     [[nodiscard]] double end_of_volumes(const Ray& ray) const;
 
