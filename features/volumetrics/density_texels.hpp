@@ -40,8 +40,8 @@ enum class MapEdge : std::uint8_t {
     repeat,
 };
 
-/// Multiplies the density of all fog, its emission too, by the map's value at (x, z), and by a profile over the height:
-/// min(1, (y - bottom) / fade) min(1, (top - y) / fade), 0 outside.
+/// Multiplies homogeneous and height fog, their emission too, by the map's value at (x, z), and by a profile over the
+/// height: min(1, (y - bottom) / fade) min(1, (top - y) / fade), 0 outside.
 struct DensityMap {
     std::shared_ptr<const DensityTexels> texels; ///< of depth 1, columns along +x, rows along +z; null: no map
     glm::vec2 center_m{0.0F};                    ///< x and z in the world, each in [-1e6, 1e6]

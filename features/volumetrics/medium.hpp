@@ -39,7 +39,7 @@ struct Medium {
     HomogeneousFog homogeneous;
     HeightFog height;
     DensityNoise noise;
-    DensityMap map;                   ///< after the volumes, too
+    DensityMap map;                   ///< of homogeneous and height fog, before the volumes
     std::vector<LocalVolume> volumes; ///< blended in in this order, before the noise; at most LocalVolume::most
     float phase_g = 0.0F;             ///< Henyey-Greenstein asymmetry, [-0.999, 0.999]; > 0 scatters forward
     PhaseLobes phase_lobes;           ///< where there are any, they take the place of phase_g
@@ -62,7 +62,7 @@ struct Medium {
 /// The different density grids of the volumes that are not empty, in the order of their first volumes.
 [[nodiscard]] std::vector<std::shared_ptr<const DensityTexels>> grids_of(const Medium& medium);
 
-/// By how much the map weakens the fog in the mean, its profile left out; 1 where there is none.
+/// By how much the map weakens homogeneous and height fog in the mean, its profile left out; 1 where there is none.
 [[nodiscard]] float mean_of_map(const Medium& medium);
 
 /// No less than the extinction anywhere, noise left out, 1/m.

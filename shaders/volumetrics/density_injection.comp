@@ -91,6 +91,13 @@ void main() {
         medium += vec4(u.height.rgb, 1.0) * (u.height.w * mean);
         emission += u.height_emission.rgb * mean;
     }
+#if TEXTURES
+    if (has_map) {
+        float kept = mean_map_density(eye + ray * near_m, eye + ray * far_m);
+        medium *= kept;
+        emission *= kept;
+    }
+#endif
     if (has_volumes) {
         for (uint i = 0u; i < u.frame.z; ++i) {
             blend_local_volume(u.volumes[i], eye + ray * near_m, eye + ray * far_m, medium, emission);
@@ -104,13 +111,6 @@ void main() {
         medium *= factor;
         emission *= factor;
     }
-#if TEXTURES
-    if (has_map) {
-        float kept = mean_map_density(eye + ray * near_m, eye + ray * far_m);
-        medium *= kept;
-        emission *= kept;
-    }
-#endif
     imageStore(density, froxel, storable(medium));
 #if EMISSION
     imageStore(emitted, froxel, storable(vec4(emission, 0.0)));

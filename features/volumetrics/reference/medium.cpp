@@ -92,7 +92,7 @@ Coefficients Fog::changed(Coefficients before, const glm::dvec3& point) const {
     for (const LocalVolume& volume : volumes_) {
         before = blended(volume, before, point);
     }
-    const double factor = noise_factor(point) * map_density(medium_->map, point);
+    const double factor = noise_factor(point);
     return {factor * before.scattering, factor * before.extinction, factor * before.emission};
 }
 
@@ -132,12 +132,13 @@ double Fog::height_profile(const glm::dvec3& point) const {
 Coefficients Fog::at(const glm::dvec3& point) const {
     const HomogeneousFog& homogeneous = medium_->homogeneous;
     const HeightFog& height = medium_->height;
-    const double here = height_profile(point);
-    const double even = static_cast<double>(homogeneous.extinction_per_m);
+    const double kept = map_density(medium_->map, point);
+    const double here = kept * height_profile(point);
+    const double even = kept * static_cast<double>(homogeneous.extinction_per_m);
     const double low = here * static_cast<double>(height.extinction_per_m);
-    const Coefficients everywhere{even * glm::dvec3(homogeneous.albedo) + low * glm::dvec3(height.albedo),
-                                  glm::dvec3(even + low),
-                                  glm::dvec3(homogeneous.emission_per_m) + here * glm::dvec3(height.emission_per_m)};
+    const Coefficients everywhere{
+        even * glm::dvec3(homogeneous.albedo) + low * glm::dvec3(height.albedo), glm::dvec3(even + low),
+        kept * glm::dvec3(homogeneous.emission_per_m) + here * glm::dvec3(height.emission_per_m)};
     return changed(everywhere, point);
 }
 
@@ -149,8 +150,9 @@ bool Fog::emits() const {
 }
 
 Coefficients Fog::ending_at(const glm::dvec3& point, const glm::dvec3& direction) const {
-    const double height =
-        ends_toward(direction) ? height_profile(point) * static_cast<double>(medium_->height.extinction_per_m) : 0.0;
+    const double height = ends_toward(direction) ? map_density(medium_->map, point) * height_profile(point) *
+                                                       static_cast<double>(medium_->height.extinction_per_m)
+                                                 : 0.0;
     return changed({.scattering = height * glm::dvec3(medium_->height.albedo), .extinction = glm::dvec3(height)},
                    point);
 }

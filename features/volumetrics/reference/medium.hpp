@@ -75,7 +75,7 @@ private:
     [[nodiscard]] double noise_factor(const glm::dvec3& point) const;
     [[nodiscard]] double height_profile(const glm::dvec3& point) const; ///< 1 at the base
 
-    /// `before` with volumes, noise and map.
+    /// `before` with volumes and noise.
     [[nodiscard]] Coefficients changed(Coefficients before, const glm::dvec3& point) const;
     [[nodiscard]] double end_of_volumes(const Ray& ray) const;
 
