@@ -59,7 +59,8 @@ float edge_weight(GpuLocalVolume volume, vec3 q) {
 
 // Blends the volume into `medium` (scattering rgb, extinction a) and `emission`, means over the slice from `near` to
 // `far`. Inside the overlap the weight is its mean there, of soft edges by Gauss-Legendre with three nodes.
-// Who defines DENSITY_GRIDS, a bool, has mean_grid_weight for volumes with a grid.
+// Who defines DENSITY_GRIDS, a bool, has mean_grid_weight for volumes with a grid; for others
+// its mean counts.
 void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 medium, inout vec3 emission) {
     vec3 a = shape_space(volume, near);
     vec3 d = shape_space(volume, far) - a;
@@ -79,6 +80,8 @@ void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 m
     if (DENSITY_GRIDS && volume.grid.w > 0.0) {
         weight = mean_grid_weight(volume, a + overlap.x * d, part * d);
     }
+#else
+    weight *= volume.emission.a;
 #endif
     float amount = weight * volume.albedo_amount.w;
     vec4 own = vec4(volume.albedo_amount.rgb, 1.0) * amount;
