@@ -39,7 +39,8 @@ double distance_m(const Box& box, const glm::dvec3& point) {
 }
 
 std::string label(std::span<const Light> lights, std::size_t index) {
-    return lights[index].name.empty() ? "local light " + std::to_string(index) : "'" + lights[index].name + "'";
+    const std::string& name = lights[index].name;
+    return "local light " + std::to_string(index) + (name.empty() ? "" : " '" + name + "'");
 }
 
 } // namespace
