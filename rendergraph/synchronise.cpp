@@ -80,21 +80,15 @@ private:
             for (const std::uint32_t other : memory_.taken_over_by(resource)) {
                 before.entry = Hazard::aliased_memory;
                 before.alias_of = before.alias_of == none ? other : before.alias_of;
-                add_last_uses(other);
+                // All of them, though the last ones come after the others: validation follows images and buffers in the
+                // same bytes apart, and sees no way through the former from one of the latter to the next.
+                for (const Use& use : uses_of(other)) {
+                    entry_uses_.push_back(&use);
+                }
             }
             before.uses = entry_uses_;
         }
         return before;
-    }
-
-    /// Adds to entry_uses_ what the resource's uses end with, of each cell: all others come before those, and what they
-    /// wrote is available to them.
-    void add_last_uses(std::uint32_t resource) {
-        cell_uses_.sort(cells_.of_resource[resource], uses_of(resource));
-        for (std::uint32_t cell = 0; cell < cells_.of_resource[resource].count(); ++cell) {
-            const Uses last = last_group(cell_uses_.of(cell));
-            entry_uses_.insert(entry_uses_.end(), last.begin(), last.end());
-        }
     }
 
     void visit(std::uint32_t resource) {

@@ -48,18 +48,6 @@ struct Group {
     return {uses.first(count), first.writes, first.writes && !first.reads, first.scope.layout};
 }
 
-/// The group that `uses` ends with.
-[[nodiscard]] inline Uses last_group(Uses uses) {
-    std::size_t count = std::min<std::size_t>(uses.size(), 1);
-    const auto joins = [&](const Use& use) {
-        return !use.writes && !uses.back()->writes && use.scope.layout == uses.back()->scope.layout;
-    };
-    while (count < uses.size() && joins(*uses[uses.size() - count - 1])) {
-        ++count;
-    }
-    return uses.last(count);
-}
-
 /// What came before a group: other uses, or the state on the way in.
 struct Before {
     Uses uses;

@@ -183,7 +183,6 @@ TEST_F(Queues, MemoryThatChangesHandsIsMadeAvailableByAMemoryBarrier) {
     EXPECT_EQ(recorded, shared_with_content + 1) << "one for each, and the one that opens the frame";
     const auto orders_others = std::count_if(plan.dependencies.begin(), plan.dependencies.end(),
                                              [](const Dependency& d) { return d.orders_for != none; });
-    EXPECT_GT(orders_others, 0);
     EXPECT_EQ(recorded_order, static_cast<std::size_t>(orders_others)) << "what other resources rely on";
 }
 
