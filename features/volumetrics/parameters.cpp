@@ -73,6 +73,12 @@ glm::vec4 depth_coefficients(const glm::dmat4& p) {
     return glm::vec4(c);
 }
 
+/// 0 or 1, whichever lies farther; `c` of depth_coefficients.
+float far_device_depth(const glm::vec4& c) {
+    const bool endless = c.z <= 0.0F; // at 0
+    return endless || c.x * (c.z + c.w) > (c.x - c.y) * c.z ? 0.0F : 1.0F;
+}
+
 glm::vec4 temporal_parameters(const FrameInputs& frame, const std::optional<FrameMemory>& before,
                               float radiance_scale) {
     const float weight = frame.settings.temporal.new_frame_weight;
@@ -408,6 +414,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
         u.esm_exponents[i] = frame.settings.shadow.esm_exponent[static_cast<std::size_t>(i)];
     }
     u.depth = depth_coefficients(frame.camera.clip_from_view);
+    u.sky.x = far_device_depth(u.depth);
     u.frame = glm::uvec4(frames_since_cut, frame.lights.size(), write_volumes(frame, density_scale, emission_scale, u),
                          write_changes(frame, before, u));
     u.march = glm::vec4(u.frame.z, light_march(medium, frame.settings).steps, light_step_growth, light_step_cells);

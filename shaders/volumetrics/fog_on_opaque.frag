@@ -1,6 +1,6 @@
 // Opaque colour -> colour times transmittance plus in-scattered radiance, at each pixel's own depth. The blend unit does
-// it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog
-// of the whole ray, to infinity where the far plane lies there. Lights that the froxels leave out are integrated here.
+// it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog of the whole ray to
+// infinity, wherever the far plane lies. Lights that the froxels leave out are integrated here.
 //
 // LOCAL_SHADOW 1: one of them casts shadows.
 #version 460
@@ -27,6 +27,7 @@ layout(location = 0) out vec4 fog;
 void main() {
     float d = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
     float depth_m = (u.depth.x - d * u.depth.y) / max(u.depth.z + d * u.depth.w, 1e-30);
+    depth_m = mix(depth_m, 1e29, d == u.sky.x);
     vec2 uv = gl_FragCoord.xy / vec2(textureSize(scene_depth, 0));
     vec3 radiance;
     vec3 transmittance;

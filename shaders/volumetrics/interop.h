@@ -65,6 +65,7 @@ struct VolumetricParameters {
     vec4 esm_exponents;   // k of each cascade, per unit of shadow depth
     vec4 esm_size;        // x: texels of a side of the ESM; y: 1 / x; z: texels of a side of a cascade; w: 1 / z
     vec4 depth;           // view depth of device depth d: (x - d y) / (z + d w)
+    vec4 sky;             // x: device depth of the far plane, where there is no surface; yzw 0
     uvec4 kept_lights[TYNDALL_AIRLIGHT_CANDIDATES / 128]; // a bit a light: 0 where the froxels leave it out
     uvec4 frame;          // x: frames since the last cut; y: lights; z: local volumes; w: pairs of changed_lights
     GpuLocalVolume volumes[TYNDALL_LOCAL_VOLUME_COUNT]; // the first frame.z

@@ -80,6 +80,19 @@ TEST_F(FarField, ContinuesWhatALongerRangeHolds) {
     expect("height fog that weakens the sun", 5e-3);
 }
 
+TEST_F(FarField, SkyIsTheSameWhereverTheFarPlaneLies) {
+    Scene scene = hazy_scene();
+    const Result endless = render(scene);
+    glm::dmat4& p = scene.inputs.camera.clip_from_view;
+    const double far_m = 100.0;
+    const double plane_m = p[3][2];
+    p[2][2] = plane_m / (far_m - plane_m);
+    p[3][2] = plane_m * far_m / (far_m - plane_m);
+    const double worst = largest_relative_difference(render(scene), endless);
+    std::printf("sky behind a far plane of 100 m: %.2e\n", worst);
+    EXPECT_LE(worst, 1e-5);
+}
+
 TEST_F(FarField, TakesTheAlbedoOfTheFogThatIsSeen) {
     // White fog everywhere, blue fog that lies low: the mean over one optical depth of the former stands for the ray.
     Scene scene = hazy_scene();

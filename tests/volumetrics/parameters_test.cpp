@@ -74,6 +74,17 @@ INSTANTIATE_TEST_SUITE_P(All, Projections,
                                          perspective(1.2, 0.7, 0.1, 0.0, {0.2, -0.1}),
                                          orthographic(60.0, 50.0, 0.1, 100.0), standard_depth(1.0, 0.1, 100.0)));
 
+TEST_P(Projections, SkyIsTheFartherEndOfDeviceDepth) {
+    FrameInputs frame;
+    frame.camera.clip_from_view = GetParam();
+    const auto device_depth = [&](double depth_m) {
+        const glm::dvec4 clip = GetParam() * glm::dvec4(0.0, 0.0, -depth_m, 1.0);
+        return clip.z / clip.w;
+    };
+    const double towards = device_depth(90.0) - device_depth(1.0);
+    EXPECT_EQ(volumetric_parameters(frame, std::nullopt).sky.x, towards > 0.0 ? 1.0F : 0.0F);
+}
+
 TEST(Parameters, SkyOfAnInfiniteProjectionIsFar) {
     FrameInputs frame;
     frame.camera.clip_from_view = perspective(1.0, 1.0, 0.1, 0.0);
