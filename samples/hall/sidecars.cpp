@@ -51,8 +51,6 @@ std::string fog_json() {
                    {"phase", {{"g", 0.6F}}},
                    {"ambient", {{"radiance", {17.0F, 15.5F, 14.5F}}}},
                    {"grid", {{"width", 160}, {"height", 90}, {"slices", 64}, {"range_m", 40.0F}, {"shape_m", 12.0F}}},
-                   {"visibility", {{"method", "prefiltered"}}}, // many small openings: smooth from the first frame on
-                   {"shadow", {{"esm_exponent", 80.0F}}},
                    {"temporal", {{"enabled", true}, {"new_frame_weight", 0.05F}}}};
     return fog.dump(1) + "\n";
 }
