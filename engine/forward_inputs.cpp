@@ -24,7 +24,7 @@ void ForwardInputs::find(rg::Blackboard& blackboard, bool transparent) {
         local_shadows = on<LocalShadows>(blackboard);
     }
     if (const Air* found = blackboard.find<Air>()) {
-        air = LightMarch{found->volumes, found->noise_octaves};
+        air = LightMarch{found->volumes, found->noise_octaves, found->colored};
     }
     if (transparent) {
         scattering = on<ScatteringVolumeImages>(blackboard);
@@ -40,7 +40,8 @@ ForwardVariant ForwardInputs::variant(bool transparent) const {
             .transparent = transparent,
             .scattering = scattering.has_value(),
             .air = air,
-            .airlight_features = scattering ? scattering->airlight_features : 0};
+            .airlight_features = scattering ? scattering->airlight_features : 0,
+            .colored_scattering = scattering && scattering->colored};
 }
 
 void ForwardInputs::declare(rg::PassBuilder& pass) const {

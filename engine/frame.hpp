@@ -73,8 +73,10 @@ struct SceneImages {
 /// its way (shaders/common/light_march.glsl).
 struct Air {
     gpu::LightMedium medium{}; ///< in the render space of the frame's view
-    bool volumes = false;      ///< the constants that the march is specialised to
+    // What the march is specialised to:
+    bool volumes = false;
     std::uint32_t noise_octaves = 0;
+    bool colored = false; ///< its COLORED_EXTINCTION
 };
 
 /// The finished picture, from the point `frame_end` on: R8G8B8A8_UNORM holding sRGB-encoded values.
@@ -94,6 +96,7 @@ struct ScatteringVolumeImages {
     rg::Image in_scattered;
     rg::Buffer parameters;               ///< uniform, begins with a gpu::ScatteringVolume and gpu::Airlights
     std::uint32_t airlight_features = 0; ///< see shaders/common/airlight.h
+    bool colored = false;                ///< its COLORED_EXTINCTION
 };
 
 /// Optional, put by a feature whose passes use imports of its own: bound along with the renderer's.

@@ -91,8 +91,10 @@ std::size_t program_for(const ParticleSurroundings& surroundings) {
     return surroundings.scattering ? scattering_index + (local_shadows ? 1 : 0) : light_kinds * sun_shadow + lights;
 }
 
-std::uint32_t airlight_features_of(const ParticleSurroundings& surroundings) {
-    return surroundings.scattering ? surroundings.scattering->airlight_features : 0;
+ParticleFog fog_of(const ParticleSurroundings& surroundings) {
+    return surroundings.scattering
+               ? ParticleFog{surroundings.scattering->airlight_features, surroundings.scattering->colored}
+               : ParticleFog{};
 }
 
 } // namespace
@@ -135,20 +137,20 @@ tl::expected<void, Error> ParticleSystem::make_layouts() {
     return {};
 }
 
-tl::expected<void, Error> ParticleSystem::make_pipeline(std::size_t program, std::uint32_t airlight_features) {
+tl::expected<void, Error> ParticleSystem::make_pipeline(std::size_t program, const ParticleFog& fog) {
     Program& wanted = programs_[program];
-    if (wanted.pipelines.contains(airlight_features)) {
+    if (wanted.pipelines.contains(fog)) {
         return {};
     }
     const std::span<const std::uint32_t> vertex[] = {
         particle_direct_s0_l00, particle_direct_s0_l10, particle_direct_s0_l11, particle_direct_s1_l00,
         particle_direct_s1_l10, particle_direct_s1_l11, particle_scattering_p0, particle_scattering_p1};
-    const SpecializationConstant constant{0, airlight_features};
+    const std::array<SpecializationConstant, 2> constants = {{{0, fog.airlight_features}, {1, fog.colored ? 1U : 0U}}};
     auto pipeline = create_graphics_pipeline(*device_, cache_,
                                              {.layout = wanted.layout.get(),
                                               .vertex_spirv = vertex[program],
                                               .fragment_spirv = particle_fragment,
-                                              .constants = {&constant, 1},
+                                              .constants = constants,
                                               .color_formats = std::span(&color_format_, 1),
                                               .depth_format = depth_format_,
                                               .blends = std::span(&premultiplied, 1),
@@ -157,7 +159,7 @@ tl::expected<void, Error> ParticleSystem::make_pipeline(std::size_t program, std
     if (!pipeline) {
         return tl::unexpected(pipeline.error());
     }
-    wanted.pipelines.emplace(airlight_features, std::move(*pipeline));
+    wanted.pipelines.emplace(fog, std::move(*pipeline));
     return {};
 }
 
@@ -266,7 +268,7 @@ tl::expected<void, Error> ParticleSystem::add_reads(rg::PassBuilder& pass, const
         pass.reads(surroundings.local_shadows->maps, rg::Access::sampled_graphics)
             .reads(surroundings.local_shadows->records, rg::Access::storage_graphics);
     }
-    return make_pipeline(program_for(surroundings), airlight_features_of(surroundings));
+    return make_pipeline(program_for(surroundings), fog_of(surroundings));
 }
 
 void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, const ParticleSurroundings& surroundings,
@@ -297,7 +299,7 @@ void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, cons
         bind(ctx.storage(8, surroundings.local_shadows->records));
     }
     const Program& program = programs_[program_for(surroundings)];
-    const Pipeline& pipeline = program.pipelines.at(airlight_features_of(surroundings));
+    const Pipeline& pipeline = program.pipelines.at(fog_of(surroundings));
     ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
     ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout.get(), 0, std::span(bindings).first(count));
     ctx.vk().CmdDrawIndirect(ctx.cmd(), ctx.buffer(draws.commands), interval * command_bytes, 1,

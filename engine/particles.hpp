@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -52,6 +53,14 @@ struct ParticleSurroundings {
     std::optional<LocalShadows> local_shadows; ///< absent: lights reach everything
 };
 
+/// What the pipelines that read a scattering volume are specialised to, as ScatteringVolumeImages has it.
+struct ParticleFog {
+    std::uint32_t airlight_features = 0;
+    bool colored = false;
+
+    friend auto operator<=>(const ParticleFog&, const ParticleFog&) = default;
+};
+
 class ParticleSystem {
 public:
     /// `emitters` is not empty. `frames_in_flight` as the executor has. `device` outlives the system.
@@ -84,7 +93,7 @@ private:
     struct Program {
         DescriptorSetLayout set;
         PipelineLayout layout;
-        std::map<std::uint32_t, Pipeline> pipelines; ///< by `airlight_features`
+        std::map<ParticleFog, Pipeline> pipelines;
     };
     struct Slot {
         Buffer frame;
@@ -95,7 +104,7 @@ private:
         : device_(&device), cache_(cache), emitters_(std::move(emitters)), passes_(std::move(passes)),
           color_format_(color), depth_format_(depth) {}
     [[nodiscard]] tl::expected<void, Error> make_layouts();
-    [[nodiscard]] tl::expected<void, Error> make_pipeline(std::size_t program, std::uint32_t airlight_features);
+    [[nodiscard]] tl::expected<void, Error> make_pipeline(std::size_t program, const ParticleFog& fog);
     [[nodiscard]] tl::expected<void, Error> make_samplers();
     [[nodiscard]] tl::expected<void, Error> make_slots(std::uint32_t count);
     [[nodiscard]] tl::expected<void, Error> write_host_data(const FrameView& view, const ParticleLight& light,

@@ -234,12 +234,13 @@ tl::expected<Program, Error> RendererPipelines::depth(DepthTarget target, bool m
 tl::expected<Program, Error> RendererPipelines::forward(const ForwardVariant& variant, std::uint32_t features) {
     return find_or_make({{Kind::forward, variant}, false, features}, [&](VkPipelineLayout pipeline_layout) {
         const LightMarch march = variant.air.value_or(LightMarch{});
-        const std::array<SpecializationConstant, 6> constants = {{{0, features},
+        const std::array<SpecializationConstant, 7> constants = {{{0, features},
                                                                   {1, unrolled_lights_},
                                                                   {2, variant.air ? 1U : 0U},
                                                                   {3, march.volumes ? 1U : 0U},
                                                                   {4, march.octaves},
-                                                                  {5, variant.airlight_features}}};
+                                                                  {5, variant.airlight_features},
+                                                                  {6, march.colored || variant.colored_scattering}}};
         constexpr VkColorComponentFlags rgba =
             VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
         const VkPipelineColorBlendAttachmentState premultiplied{

@@ -21,6 +21,7 @@ enum class LocalLights : std::uint8_t { none, all, of_cluster };
 struct LightMarch {
     bool volumes = false;
     std::uint32_t octaves = 0;
+    bool colored = false;
 
     friend auto operator<=>(const LightMarch&, const LightMarch&) = default;
 };
@@ -34,6 +35,7 @@ struct ForwardVariant {
     bool scattering = false;             ///< with `transparent` only
     std::optional<LightMarch> air;       ///< weakens light on its way
     std::uint32_t airlight_features = 0; ///< with `scattering` only; see shaders/common/airlight.h
+    bool colored_scattering = false;     ///< with `scattering` only
 
     friend auto operator<=>(const ForwardVariant&, const ForwardVariant&) = default;
 };

@@ -117,6 +117,9 @@ AirlightChoice choose_airlights(const FrameInputs& frame, const std::optional<Fr
     if (!has_closed_form(frame.medium)) {
         return {{}, "only froxels know noise and local volumes"};
     }
+    if (is_colored(frame.medium)) {
+        return {{}, "only froxels know extinction of each channel"};
+    }
     const gpu::ScatteringVolume volume = scattering_volume(frame.settings.grid, frame.camera, 1.0F);
     std::vector<Candidate> candidates;
     double brightest = 0.0;

@@ -22,8 +22,8 @@ struct AirlightChoice {
 
 /// The brightest, as the eye sees them through the fog, of those that have a ray of the view within a few froxels'
 /// widths; a spot counts as much nearer as its cone is narrow. A light that was chosen before stays so until it is
-/// half as far outside again, or another is half as bright again. None in a medium without a closed form: with noise or
-/// local volumes.
+/// half as far outside again, or another is half as bright again. None in a medium without a closed form, with noise or
+/// local volumes, or whose extinction differs between the channels.
 [[nodiscard]] AirlightChoice choose_airlights(const FrameInputs& frame, const std::optional<FrameMemory>& before);
 
 /// The lights as the froxels see them: those that they leave out are dark.

@@ -179,6 +179,11 @@ float change_everywhere(const FrameInputs& frame, const FrameMemory& before) {
     change += sun_change(frame.sun, before.sun, steepness(phase));
     const glm::vec4 air = air_of(frame);
     change += relative_difference(glm::vec3(air), glm::vec3(before.air)) + (air.w != before.air.w ? 1.0 : 0.0);
+    if (air != glm::vec4(0.0F)) {
+        change +=
+            relative_difference(frame.medium.homogeneous.extinction_color, before.medium.homogeneous.extinction_color) +
+            relative_difference(frame.medium.height.extinction_color, before.medium.height.extinction_color);
+    }
     change += march_change(frame, before);
     return static_cast<float>(std::min(change, 1.0));
 }

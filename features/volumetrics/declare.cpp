@@ -26,9 +26,10 @@ rg::ImageDesc columns_image(const FrameInputs& inputs) {
     return {.format = volume_format(inputs.settings), .extent = {columns.x, columns.y, 1}};
 }
 
-rg::ImageDesc froxel_image(const FrameInputs& inputs) {
+/// `halves` 2: as many slices for what each channel has of its own.
+rg::ImageDesc froxel_image(const FrameInputs& inputs, std::uint32_t halves = 1) {
     rg::ImageDesc desc = columns_image(inputs);
-    desc.extent.depth = inputs.settings.grid.slices;
+    desc.extent.depth = inputs.settings.grid.slices * halves;
     desc.type = VK_IMAGE_TYPE_3D;
     return desc;
 }
@@ -48,7 +49,7 @@ constexpr rg::ViewDesc depth_view{.range = {.aspects = VK_IMAGE_ASPECT_DEPTH_BIT
 
 void Feature::State::declare_density(rg::GraphBuilder& graph) {
     const Settings& settings = frame->inputs.settings;
-    rg::Image density = graph.create_image(named("fog density"), froxel_image(frame->inputs));
+    rg::Image density = graph.create_image(named("fog density"), froxel_image(frame->inputs, frame->colored ? 2 : 1));
     const Dispatch dispatch = covering(frame->density_injection, row_group(settings.grid.width), settings.grid.width,
                                        settings.grid.height, settings.grid.slices);
     auto pass = graph.add_pass(named("density injection"), PassKind::compute);
@@ -202,7 +203,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     // What the constants do not name keeps its value, so that a frame without them shares its pipeline.
     const PhaseLobes phase = phase_of(inputs.medium);
     const LightMarch march = light_march(inputs.medium, inputs.settings);
-    const std::array<std::uint32_t, 15> constants{
+    const std::array<std::uint32_t, 16> constants{
         inputs.sun && inputs.sun->illuminance_lux != glm::vec3(0.0F),
         variant.sun_shadow ? graph.describe(frame->shadow_map)->layers : 0,
         is_perspective(inputs.camera),
@@ -217,6 +218,7 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
         weakens_light(inputs.medium, inputs.settings),
         march.volumes,
         march.octaves,
+        frame->colored,
         variant.lights != LocalLights::none && frame->airlight_features != 0,
     };
     const auto program = pipelines.compute(froxel_lighting_shader(variant), group, constants);
@@ -282,7 +284,8 @@ tl::expected<void, Error> Feature::State::declare_lighting(rg::GraphBuilder& gra
     });
     frame->volume = VolumeResources{.in_scattered = in_scattered,
                                     .parameters = frame->parameter_buffer,
-                                    .airlight_features = frame->airlight_features};
+                                    .airlight_features = frame->airlight_features,
+                                    .colored = frame->colored};
     return {};
 }
 
@@ -291,14 +294,14 @@ tl::expected<void, Error> Feature::State::declare_accumulation(rg::GraphBuilder&
     const GridSettings& grid = settings.grid;
     const GroupShape group = row_group(grid.width, 32); // few columns: small groups keep all cores busy
     const auto program = pipelines.compute(
-        accumulation_shader(settings.storage, settings.error_estimate, frame->emission), group,
+        accumulation_shader(settings.storage, frame->colored, settings.error_estimate, frame->emission), group,
         std::array{static_cast<std::uint32_t>(settings.integrator), std::uint32_t{frame->depth_curve}});
     if (!program) {
         frame->volume.reset();
         return tl::unexpected(program.error());
     }
     rg::ImageDesc boundaries = columns_image(frame->inputs);
-    boundaries.layers = grid.slices + 1;
+    boundaries.layers = (grid.slices + 1) * (frame->colored ? 2 : 1);
     rg::Image accumulated = graph.create_image(named("accumulated fog"), boundaries);
     auto pass = graph.add_pass(named("fog accumulation"), PassKind::compute);
     pass.on_queue(wish())

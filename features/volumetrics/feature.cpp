@@ -130,19 +130,20 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
     if (auto made = baked ? shared.make_noise() : tl::expected<void, Error>(); !made) {
         return made;
     }
-    const std::array<std::uint32_t, 9> media{
+    const std::array<std::uint32_t, 10> media{
         medium.homogeneous.extinction_per_m > 0.0F || medium.homogeneous.emission_per_m != none,
         medium.height.extinction_per_m > 0.0F || medium.height.emission_per_m != none,
         medium.noise.amplitude > 0.0F && !baked ? medium.noise.octaves : 0,
         is_perspective(frame->inputs.camera),
         frame->parameters.frame.z > 0,
         frame->depth_curve,
+        frame->colored,
         baked,
         medium.map.texels != nullptr,
         has_grids};
     auto density =
         pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission, textures),
-                          row_group(grid.width), std::span(media).first(textures ? 9 : 6));
+                          row_group(grid.width), std::span(media).first(textures ? 10 : 7));
     if (!density) {
         return tl::unexpected(density.error());
     }
@@ -154,8 +155,9 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
         }
         frame->light_clustering = *clustering;
     }
-    auto fog = pipelines.full_screen_blend(full_screen_shader(), fog_on_opaque_shader(frame->airlight_shadow),
-                                           frame->inputs.color_format, std::array{frame->airlight_features});
+    auto fog =
+        pipelines.full_screen_blend(full_screen_shader(), fog_on_opaque_shader(frame->colored, frame->airlight_shadow),
+                                    frame->inputs.color_format, frame->colored, std::array{frame->airlight_features});
     if (!fog) {
         return tl::unexpected(fog.error());
     }
@@ -229,13 +231,18 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
             state.omit("a range fitted to the view", fitted.why);
         }
     }
+    const bool colored = is_colored(inputs.medium);
+    if (colored && !shared_->info.dual_source_blending) {
+        return tl::unexpected(Error{"Extinction that differs between the channels needs a device with dualSrcBlend, "
+                                    "enabled and told by FeatureInfo::dual_source_blending."});
+    }
     const bool cold = starts_cold(inputs, state.before);
     if (cold) {
         state.before.reset();
     }
     const AirlightChoice airlight = choose_airlights(inputs, state.before);
     state.tell(airlight, inputs.lights.size());
-    FrameState frame{.inputs = inputs, .cold = cold};
+    FrameState frame{.inputs = inputs, .cold = cold, .colored = colored};
     frame.inputs.lights = froxel_lights(inputs, airlight);
     frame.camera_stands = camera_stands(inputs, state.before);
     frame.parameters = volumetric_parameters(frame.inputs, state.before);
@@ -304,6 +311,9 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
         state.declare_noise(graph);
     }
     state.declare_textures(graph);
+    if (!frame.colored) {
+        state.omit("extinction of each channel", "every medium is grey");
+    }
     state.declare_density(graph);
     if (is_clustered(frame.lights)) {
         state.declare_clustering(graph);
@@ -380,8 +390,11 @@ std::optional<LightWay> Feature::light_way(std::uint32_t view) const {
         return std::nullopt;
     }
     const gpu::VolumetricParameters& u = found->frame->parameters;
-    LightWay way{.march = light_march(found->frame->inputs.medium, found->frame->inputs.settings),
+    LightWay way{.colored = found->frame->colored,
+                 .march = light_march(found->frame->inputs.medium, found->frame->inputs.settings),
                  .medium = {.air = u.air,
+                            .homogeneous_color = u.homogeneous_color,
+                            .height_color = u.height_color,
                             .noise_origin = u.noise_origin,
                             .noise_cells = u.noise_cells,
                             .density_scale = u.density_scale,

@@ -35,6 +35,7 @@ struct FeatureInfo {
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE; ///< may be null
     VkPhysicalDeviceMemoryProperties memory_properties = {};
     std::uint32_t frames_in_flight = 2;
+    bool dual_source_blending = false; ///< the feature dualSrcBlend is enabled: media of coloured extinction need it
     /// Every family whose queues a frame's passes may run on: the feature's own buffers are shared between them.
     std::vector<std::uint32_t> queue_families = {};
 };
@@ -66,15 +67,18 @@ struct ClusterResources {
 
 /// For shaders/common/scattering_volume.glsl.
 struct VolumeResources {
-    rg::Image accumulated;               ///< 2D array of slices + 1 layers: radiance toward the eye, optical depth
-    rg::Image in_scattered;              ///< 3D: radiance per unit of scattering coefficient
-    rg::Buffer parameters;               ///< begins with gpu::ScatteringVolume, then gpu::Airlights
+    rg::Image accumulated;  ///< 2D array of slices + 1 layers: radiance toward the eye, optical depth; as many with the
+                            ///< optical depth of each channel, where extinction is coloured
+    rg::Image in_scattered; ///< 3D: radiance per unit of scattering coefficient
+    rg::Buffer parameters;  ///< begins with gpu::ScatteringVolume, then gpu::Airlights
     std::uint32_t airlight_features = 0; ///< see shaders/common/airlight.h
+    bool colored = false;                ///< extinction is: the constant COLORED_EXTINCTION of the look-ups
 };
 
 /// Intermediate images, for looking at; invalid where their pass was left out.
 struct StageResources {
-    rg::Image density;  ///< 3D: scattering coefficient and extinction, 1/m times VolumetricParameters::density_scale.x
+    rg::Image density;  ///< 3D: scattering coefficient and extinction, 1/m times VolumetricParameters::density_scale.x;
+                        ///< as many slices with the extinction of each channel, where it is coloured
     rg::Image emission; ///< 3D: radiance gained per metre, cd/m^3 times VolumetricParameters::emission_scale.x
     /// Two fp16 of a word, x fastest, then y, then z: shape and detail, in the frame that bakes them.
     std::array<rg::Buffer, 2> baked_noise;

@@ -23,6 +23,7 @@ struct FrameState {
     bool sun_shadow = false;
     bool depth_curve = false; ///< the depth law is one
     bool emission = false;    ///< the medium emits somewhere
+    bool colored = false;     ///< its extinction differs between the channels
     LocalLights lights = LocalLights::none;
     bool local_shadow = false;                     ///< some local light casts one
     bool froxel_shadow = false;                    ///< one that is in the froxels does

@@ -77,7 +77,7 @@ void read_volume(Section& s, LocalVolume& volume) {
         s.read("factor", volume.factor);
         return;
     }
-    s.read("extinction_per_m", volume.extinction_per_m);
+    s.read_extinction("extinction_per_m", volume.extinction_per_m, volume.extinction_color);
     if (volume.blend != VolumeBlend::subtract) {
         s.read("albedo", volume.albedo);
         s.read("emission_per_m", volume.emission_per_m);
@@ -108,12 +108,13 @@ void read_medium(Section& root, Fog& fog, std::optional<Error>& error) {
     Medium& medium = fog.medium;
     subsection(root, "medium", error, [&](Section& section) {
         subsection(section, "homogeneous", error, [&](Section& s) {
-            s.read("extinction_per_m", medium.homogeneous.extinction_per_m);
+            s.read_extinction("extinction_per_m", medium.homogeneous.extinction_per_m,
+                              medium.homogeneous.extinction_color);
             s.read("albedo", medium.homogeneous.albedo);
             s.read("emission_per_m", medium.homogeneous.emission_per_m);
         });
         subsection(section, "height", error, [&](Section& s) {
-            s.read("extinction_per_m", medium.height.extinction_per_m);
+            s.read_extinction("extinction_per_m", medium.height.extinction_per_m, medium.height.extinction_color);
             s.read("albedo", medium.height.albedo);
             s.read("emission_per_m", medium.height.emission_per_m);
             s.read("base_height_m", medium.height.base_height_m);

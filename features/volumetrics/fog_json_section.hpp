@@ -1,6 +1,7 @@
 // One object of a fog file, read key by key.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -19,6 +20,7 @@
 
 #include "features/volumetrics/error.hpp"
 #include "features/volumetrics/fog_json.hpp"
+#include "features/volumetrics/range_check.hpp"
 
 namespace tyndall::volumetrics {
 
@@ -111,6 +113,29 @@ public:
         if (const Json* json = find(key)) {
             read_vector(*json, path_of(key), value);
         }
+    }
+    /// One number, or an array of one a channel: the largest, and all in parts of it.
+    void read_extinction(const char* key, float& largest, glm::vec3& color) {
+        const Json* json = find(key);
+        if (json == nullptr || !json->is_array()) {
+            read(key, largest);
+            return;
+        }
+        glm::vec3 channels(0.0F);
+        if (json->size() != 3) {
+            complain(path_of(key), "must be a number or an array of 3 numbers");
+            return;
+        }
+        read_vector(*json, path_of(key), channels);
+        for (int i = 0; i < 3; ++i) {
+            if (!(channels[i] >= 0.0F && channels[i] <= 1e6F)) {
+                complain(path_of(key) + "[" + std::to_string(i) + "]",
+                         "must be between 0 and 1e+06, not " + text_of(static_cast<double>(channels[i])));
+                return;
+            }
+        }
+        largest = std::max({channels.x, channels.y, channels.z});
+        color = largest > 0.0F ? channels / largest : glm::vec3(1.0F);
     }
     void read(const char* key, std::array<glm::vec3, 3>& value) {
         const Json* json = find(key);

@@ -24,6 +24,7 @@ struct LightMarch {
 
 /// For a host's own lit surfaces, by shaders/common/light_march.glsl: the constants and the block that it wants.
 struct LightWay {
+    bool colored = false; ///< extinction differs between the channels
     LightMarch march;
     gpu::LightMedium medium; ///< in the view's render space
 };

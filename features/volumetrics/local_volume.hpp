@@ -18,7 +18,7 @@ enum class VolumeBlend : std::uint8_t {
     add,      ///< extinction + w e, scattering + w e albedo, emission + w emission_per_m
     subtract, ///< extinction - w e, at least 0; scattering and emission fall in proportion
     multiply, ///< all three times 1 + w (factor - 1)
-    max,      ///< its own where w e is the larger extinction
+    max,      ///< its own in the channels in which w e is the larger extinction
 };
 
 /// In the space where the shape reaches from -1 to 1 along each axis, at the point q, the weight is 0 outside, and
@@ -33,7 +33,8 @@ struct LocalVolume {
     glm::vec3 half_size_m{1.0F};                ///< along its own axes, each in [0, 1e6]; 0: it is empty
     glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F}; ///< from its axes to the world's, of unit length
     float edge = 0.0F;                          ///< [0, 1]; 0: hard
-    float extinction_per_m = 0.0F;              ///< e, [0, 1e6]; not of multiply
+    float extinction_per_m = 0.0F;              ///< e of the channel that has most, [0, 1e6]; not of multiply
+    glm::vec3 extinction_color{1.0F};           ///< e of each channel in parts of that, [0, 1]
     float factor = 1.0F;                        ///< of multiply, [0, 1e3]
     glm::vec3 albedo{1.0F};                     ///< each in [0, 1]; of add and max
     glm::vec3 emission_per_m{0.0F};             ///< cd/m^3, each in [0, 1e9]; of add and max

@@ -46,6 +46,7 @@ void check_volumes(const Medium& medium, RangeCheck& check) {
         check.in_range("The length of " + key + "rotation", glm::length(volume.rotation), 0.999, 1.001);
         check.in_range(key + "edge", volume.edge, 0.0, 1.0);
         check.in_range(key + "extinction_per_m", volume.extinction_per_m, 0.0, 1e6);
+        check.in_range(key + "extinction_color", volume.extinction_color, 0.0, 1.0);
         check.in_range(key + "factor", volume.factor, 0.0, 1e3);
         check.in_range(key + "albedo", volume.albedo, 0.0, 1.0);
         check.in_range(key + "emission_per_m", volume.emission_per_m, 0.0, 1e9);
@@ -104,6 +105,16 @@ float mean_of_map(const Medium& medium) {
     return medium.map.texels ? static_cast<float>(medium.map.texels->mean()) : 1.0F;
 }
 
+bool is_colored(const Medium& medium) {
+    const auto differs = [](const auto& fog) {
+        return fog.extinction_per_m > 0.0F && fog.extinction_color != glm::vec3(1.0F);
+    };
+    return differs(medium.homogeneous) || differs(medium.height) ||
+           std::any_of(medium.volumes.begin(), medium.volumes.end(), [&](const LocalVolume& volume) {
+               return has_inside(volume) && volume.blend != VolumeBlend::multiply && differs(volume);
+           });
+}
+
 float extinction_bound(const Medium& medium) {
     float bound = medium.homogeneous.extinction_per_m + medium.height.extinction_per_m;
     for (const LocalVolume& volume : medium.volumes) {
@@ -141,11 +152,15 @@ double emitted_radiance_bound(const Medium& medium, double length_m) {
     // or multiplies leaves that quotient as it is.
     double bound = 0.0;
     double factor = 1.0;
-    const auto add = [&](const glm::vec3& emission_per_m, float extinction_per_m, double way_m) {
-        const auto emission = static_cast<double>(largest(emission_per_m));
-        const double unweakened = emission * way_m;
-        const auto extinction = static_cast<double>(extinction_per_m);
-        bound += unweakened * extinction > emission ? emission / extinction : unweakened;
+    const auto add = [&](const glm::vec3& emission_per_m, const glm::vec3& extinction_per_m, double way_m) {
+        double brightest = 0.0;
+        for (int c = 0; c < 3; ++c) {
+            const auto emission = static_cast<double>(emission_per_m[c]);
+            const double unweakened = emission * way_m;
+            const auto extinction = static_cast<double>(extinction_per_m[c]);
+            brightest = std::max(brightest, unweakened * extinction > emission ? emission / extinction : unweakened);
+        }
+        bound += brightest;
     };
     for (const LocalVolume& volume : medium.volumes) {
         if (!has_inside(volume)) {
@@ -155,11 +170,12 @@ double emitted_radiance_bound(const Medium& medium, double length_m) {
             factor *= std::max(1.0, static_cast<double>(volume.factor));
         } else if (volume.blend != VolumeBlend::subtract) {
             const double way_m = std::min(length_m, 2.0 * static_cast<double>(glm::length(volume.half_size_m)));
-            add(volume.emission_per_m, volume.extinction_per_m, way_m);
+            add(volume.emission_per_m, volume.extinction_per_m * volume.extinction_color, way_m);
         }
     }
-    add(medium.homogeneous.emission_per_m, medium.homogeneous.extinction_per_m, length_m);
-    add(medium.height.emission_per_m, 0.0F, length_m);
+    add(medium.homogeneous.emission_per_m, medium.homogeneous.extinction_per_m * medium.homogeneous.extinction_color,
+        length_m);
+    add(medium.height.emission_per_m, glm::vec3(0.0F), length_m);
     return bound * factor;
 }
 
@@ -170,9 +186,11 @@ bool is_empty(const Medium& medium) {
 tl::expected<void, Error> validate(const Medium& medium) {
     RangeCheck check;
     check.in_range("medium.homogeneous.extinction_per_m", medium.homogeneous.extinction_per_m, 0.0, 1e6);
+    check.in_range("medium.homogeneous.extinction_color", medium.homogeneous.extinction_color, 0.0, 1.0);
     check.in_range("medium.homogeneous.albedo", medium.homogeneous.albedo, 0.0, 1.0);
     check.in_range("medium.homogeneous.emission_per_m", medium.homogeneous.emission_per_m, 0.0, 1e9);
     check.in_range("medium.height.extinction_per_m", medium.height.extinction_per_m, 0.0, 1e6);
+    check.in_range("medium.height.extinction_color", medium.height.extinction_color, 0.0, 1.0);
     check.in_range("medium.height.albedo", medium.height.albedo, 0.0, 1.0);
     check.in_range("medium.height.emission_per_m", medium.height.emission_per_m, 0.0, 1e9);
     check.in_range("medium.height.base_height_m", medium.height.base_height_m, -1e6, 1e6);

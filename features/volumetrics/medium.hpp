@@ -18,18 +18,20 @@ namespace tyndall::volumetrics {
 
 /// The same density everywhere.
 struct HomogeneousFog {
-    float extinction_per_m = 0.0F;  ///< [0, 1e6]
-    glm::vec3 albedo{1.0F};         ///< part of the extinction that is scattered, each in [0, 1]
-    glm::vec3 emission_per_m{0.0F}; ///< radiance gained per metre in every direction, cd/m^3, each in [0, 1e9]
+    float extinction_per_m = 0.0F;    ///< of the channel that has most, [0, 1e6]
+    glm::vec3 extinction_color{1.0F}; ///< each channel's in parts of that, [0, 1]; 1: the fog is grey
+    glm::vec3 albedo{1.0F};           ///< part of the extinction that is scattered, each in [0, 1]
+    glm::vec3 emission_per_m{0.0F};   ///< radiance gained per metre in every direction, cd/m^3, each in [0, 1e9]
 };
 
 /// Extinction at and below the base, falling off above it as e^(-falloff (y - base)), y up.
 struct HeightFog {
-    float extinction_per_m = 0.0F;  ///< at the base, [0, 1e6]
-    glm::vec3 albedo{1.0F};         ///< each in [0, 1]
-    glm::vec3 emission_per_m{0.0F}; ///< at the base, falls off as the extinction does, each in [0, 1e9]
-    float base_height_m = 0.0F;     ///< world height, [-1e6, 1e6]
-    float falloff_per_m = 0.1F;     ///< [0, 1e3]
+    float extinction_per_m = 0.0F;    ///< at the base, of the channel that has most, [0, 1e6]
+    glm::vec3 extinction_color{1.0F}; ///< each channel's in parts of that, [0, 1]
+    glm::vec3 albedo{1.0F};           ///< each in [0, 1]
+    glm::vec3 emission_per_m{0.0F};   ///< at the base, falls off as the extinction does, each in [0, 1e9]
+    float base_height_m = 0.0F;       ///< world height, [-1e6, 1e6]
+    float falloff_per_m = 0.1F;       ///< [0, 1e3]
 };
 
 /// sqrt(3 / (4 pi)): of the real spherical harmonics of order 1.
@@ -64,6 +66,9 @@ struct Medium {
 
 /// By how much the map weakens homogeneous and height fog in the mean, its profile left out; 1 where there is none.
 [[nodiscard]] float mean_of_map(const Medium& medium);
+
+/// Some medium takes more of one channel than of another.
+[[nodiscard]] bool is_colored(const Medium& medium);
 
 /// No less than the extinction anywhere, noise left out, 1/m.
 [[nodiscard]] float extinction_bound(const Medium& medium);

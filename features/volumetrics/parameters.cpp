@@ -145,6 +145,8 @@ gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameter
     gpu::FarField far{};
     const float mean = mean_of_map(medium);
     far.homogeneous = glm::vec4(medium.homogeneous.albedo, mean * medium.homogeneous.extinction_per_m);
+    far.homogeneous_color = u.homogeneous_color;
+    far.height_color = u.height_color;
     far.height = glm::vec4(medium.height.albedo, mean * medium.height.extinction_per_m);
     far.up = glm::vec4(view_from_render * glm::dvec3(0.0, 1.0, 0.0),
                        frame.camera.origin_m.y - static_cast<double>(medium.height.base_height_m));
@@ -189,6 +191,7 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float
         const bool multiplies = volume.blend == VolumeBlend::multiply;
         out.albedo_amount =
             glm::vec4(volume.albedo, multiplies ? volume.factor : volume.extinction_per_m * density_scale);
+        out.color = glm::vec4(volume.extinction_color, 0.0F);
         out.emission = glm::vec4(volume.emission_per_m * emission_scale, volume.density ? volume.density->mean() : 1.0);
         if (volume.density) {
             const auto which = std::find(grids.begin(), grids.end(), volume.density) - grids.begin() + 1;
@@ -391,6 +394,8 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     }
     u.homogeneous = glm::vec4(medium.homogeneous.albedo, medium.homogeneous.extinction_per_m * density_scale);
     u.height = glm::vec4(medium.height.albedo, medium.height.extinction_per_m * density_scale);
+    u.homogeneous_color = glm::vec4(medium.homogeneous.extinction_color, 0.0F);
+    u.height_color = glm::vec4(medium.height.extinction_color, 0.0F);
     u.homogeneous_emission = glm::vec4(medium.homogeneous.emission_per_m * emission_scale, 0.0F);
     u.height_emission = glm::vec4(medium.height.emission_per_m * emission_scale, 0.0F);
     u.height_law = glm::vec4(static_cast<double>(medium.height.base_height_m) - frame.camera.origin_m.y,

@@ -130,7 +130,7 @@ tl::expected<Program, Error> Pipelines::compute(const ShaderCode& shader, const 
 }
 
 tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vertex, const ShaderCode& fragment,
-                                                          VkFormat color_format,
+                                                          VkFormat color_format, bool second_source,
                                                           std::span<const std::uint32_t> constants) {
     Entry entry{.key = {static_cast<std::uint32_t>(color_format)}, .code = fragment.spirv.data()};
     entry.key.insert(entry.key.end(), constants.begin(), constants.end());
@@ -177,16 +177,16 @@ tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vert
         const VkPipelineMultisampleStateCreateInfo samples{.sType =
                                                                VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
                                                            .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-        const VkPipelineColorBlendAttachmentState attachment{.blendEnable = VK_TRUE,
-                                                             .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
-                                                             .dstColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA,
-                                                             .colorBlendOp = VK_BLEND_OP_ADD,
-                                                             .srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO,
-                                                             .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-                                                             .alphaBlendOp = VK_BLEND_OP_ADD,
-                                                             .colorWriteMask =
-                                                                 VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                                                                 VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT};
+        const VkPipelineColorBlendAttachmentState attachment{
+            .blendEnable = VK_TRUE,
+            .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+            .dstColorBlendFactor = second_source ? VK_BLEND_FACTOR_SRC1_COLOR : VK_BLEND_FACTOR_SRC_ALPHA,
+            .colorBlendOp = VK_BLEND_OP_ADD,
+            .srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO,
+            .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+            .alphaBlendOp = VK_BLEND_OP_ADD,
+            .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
+                              VK_COLOR_COMPONENT_A_BIT};
         const VkPipelineColorBlendStateCreateInfo blend{.sType =
                                                             VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
                                                         .attachmentCount = 1,

@@ -33,10 +33,11 @@ public:
     /// `constants` are the specialization constants from id 3 on; 0 to 2 are the group shape.
     [[nodiscard]] tl::expected<Program, Error> compute(const ShaderCode& shader, const GroupShape& group,
                                                        std::span<const std::uint32_t> constants = {});
-    /// A full-screen triangle whose fragments are blended into one colour target as source * 1 + target * source alpha.
-    /// `constants` are the fragment shader's specialization constants from id 0 on.
+    /// A full-screen triangle whose fragments are blended into one colour target as source * 1 + target * source alpha,
+    /// or, with a second source, as source * 1 + target * second source. `constants` are the fragment shader's
+    /// specialization constants from id 0 on.
     [[nodiscard]] tl::expected<Program, Error> full_screen_blend(const ShaderCode& vertex, const ShaderCode& fragment,
-                                                                 VkFormat color_format,
+                                                                 VkFormat color_format, bool second_source,
                                                                  std::span<const std::uint32_t> constants = {});
 
 private:

@@ -2,14 +2,22 @@
 
 #include <array>
 
-#include "spirv/accumulation_fp16_e0_m0.h"
-#include "spirv/accumulation_fp16_e0_m1.h"
-#include "spirv/accumulation_fp16_e1_m0.h"
-#include "spirv/accumulation_fp16_e1_m1.h"
-#include "spirv/accumulation_fp32_e0_m0.h"
-#include "spirv/accumulation_fp32_e0_m1.h"
-#include "spirv/accumulation_fp32_e1_m0.h"
-#include "spirv/accumulation_fp32_e1_m1.h"
+#include "spirv/accumulation_fp16_c0_e0_m0.h"
+#include "spirv/accumulation_fp16_c0_e0_m1.h"
+#include "spirv/accumulation_fp16_c0_e1_m0.h"
+#include "spirv/accumulation_fp16_c0_e1_m1.h"
+#include "spirv/accumulation_fp16_c1_e0_m0.h"
+#include "spirv/accumulation_fp16_c1_e0_m1.h"
+#include "spirv/accumulation_fp16_c1_e1_m0.h"
+#include "spirv/accumulation_fp16_c1_e1_m1.h"
+#include "spirv/accumulation_fp32_c0_e0_m0.h"
+#include "spirv/accumulation_fp32_c0_e0_m1.h"
+#include "spirv/accumulation_fp32_c0_e1_m0.h"
+#include "spirv/accumulation_fp32_c0_e1_m1.h"
+#include "spirv/accumulation_fp32_c1_e0_m0.h"
+#include "spirv/accumulation_fp32_c1_e0_m1.h"
+#include "spirv/accumulation_fp32_c1_e1_m0.h"
+#include "spirv/accumulation_fp32_c1_e1_m1.h"
 #include "spirv/density_injection_fp16_m0_t0.h"
 #include "spirv/density_injection_fp16_m0_t1.h"
 #include "spirv/density_injection_fp16_m1_t0.h"
@@ -20,6 +28,7 @@
 #include "spirv/density_injection_fp32_m1_t1.h"
 #include "spirv/esm_blur.h"
 #include "spirv/esm_downsample.h"
+#include "spirv/fog_on_opaque_colored.h"
 #include "spirv/fog_on_opaque_p0.h"
 #include "spirv/fog_on_opaque_p1.h"
 #include "spirv/froxel_lighting_fp16_s0_l00_h0.h"
@@ -219,11 +228,13 @@ ShaderCode froxel_lighting_shader(const LightingVariant& variant) {
             variant.history ? 4U : 0U};
 }
 
-ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate, bool emission) {
+ShaderCode accumulation_shader(StorageFormat storage, bool colored, bool error_estimate, bool emission) {
     const std::span<const std::uint32_t> code[] = {
-        accumulation_fp16_e0_m0, accumulation_fp16_e0_m1, accumulation_fp16_e1_m0, accumulation_fp16_e1_m1,
-        accumulation_fp32_e0_m0, accumulation_fp32_e0_m1, accumulation_fp32_e1_m0, accumulation_fp32_e1_m1};
-    const std::size_t format = storage == StorageFormat::fp16 ? 0 : 4;
+        accumulation_fp16_c0_e0_m0, accumulation_fp16_c0_e0_m1, accumulation_fp16_c0_e1_m0, accumulation_fp16_c0_e1_m1,
+        accumulation_fp16_c1_e0_m0, accumulation_fp16_c1_e0_m1, accumulation_fp16_c1_e1_m0, accumulation_fp16_c1_e1_m1,
+        accumulation_fp32_c0_e0_m0, accumulation_fp32_c0_e0_m1, accumulation_fp32_c0_e1_m0, accumulation_fp32_c0_e1_m1,
+        accumulation_fp32_c1_e0_m0, accumulation_fp32_c1_e0_m1, accumulation_fp32_c1_e1_m0, accumulation_fp32_c1_e1_m1};
+    const std::size_t format = (storage == StorageFormat::fp16 ? 0 : 8) + (colored ? 4 : 0);
     const std::size_t index = format + (error_estimate ? 2 : 0) + (emission ? 1 : 0);
     if (emission && !error_estimate) {
         return {"accumulation", code[index], emitting_accumulation_bindings};
@@ -235,9 +246,10 @@ ShaderCode full_screen_shader() {
     return {"full screen", full_screen, {}};
 }
 
-ShaderCode fog_on_opaque_shader(bool local_shadow) {
-    const std::span<const std::uint32_t> code[] = {fog_on_opaque_p0, fog_on_opaque_p1};
-    return {"fog on opaque", code[local_shadow ? 1 : 0], std::span(fog_bindings).first(local_shadow ? 5 : 3)};
+ShaderCode fog_on_opaque_shader(bool colored, bool local_shadow) {
+    const std::span<const std::uint32_t> code[] = {fog_on_opaque_p0, fog_on_opaque_p1, fog_on_opaque_colored};
+    const std::size_t index = colored ? 2 : local_shadow ? 1 : 0;
+    return {"fog on opaque", code[index], std::span(fog_bindings).first(index == 1 ? 5 : 3)};
 }
 
 } // namespace tyndall::volumetrics

@@ -42,9 +42,9 @@ struct LightingVariant {
 [[nodiscard]] ShaderCode esm_blur_shader();
 /// Bindings that a variant lacks are left out of the list.
 [[nodiscard]] ShaderCode froxel_lighting_shader(const LightingVariant& variant);
-[[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage, bool error_estimate, bool emission);
+[[nodiscard]] ShaderCode accumulation_shader(StorageFormat storage, bool colored, bool error_estimate, bool emission);
 [[nodiscard]] ShaderCode full_screen_shader();
-/// `local_shadow`: one of the lights that it integrates casts shadows.
-[[nodiscard]] ShaderCode fog_on_opaque_shader(bool local_shadow);
+/// `local_shadow`: one of the lights that it integrates casts shadows; where extinction is coloured it integrates none.
+[[nodiscard]] ShaderCode fog_on_opaque_shader(bool colored, bool local_shadow);
 
 } // namespace tyndall::volumetrics

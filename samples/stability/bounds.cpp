@@ -34,9 +34,10 @@ void check_radiance(const StageValues& stage, BoundsReport& report) {
     }
 }
 
-void check_depth(const StageValues& stage, BoundsReport& report) {
+/// `channel` of 4.
+void check_depth(const StageValues& stage, std::size_t channel, BoundsReport& report) {
     const std::size_t layer = std::size_t{stage.width} * stage.height * 4;
-    for (std::size_t i = layer + 3; i < stage.values.size(); i += 4) {
+    for (std::size_t i = layer + channel; i < stage.values.size(); i += 4) {
         report.falling_depth += stage.values[i] < stage.values[i - layer] ? 1 : 0;
     }
 }
@@ -57,8 +58,12 @@ BoundsReport check_bounds(std::span<const StageValues> stages, std::span<const g
             source = brightest(stage);
         } else if (stage.name == "accumulated") {
             check_radiance(stage, report);
-            check_depth(stage, report);
+            check_depth(stage, 3, report);
             toward_eye = brightest(stage);
+        } else if (stage.name == "accumulated of each channel") {
+            for (std::size_t c = 0; c < 3; ++c) {
+                check_depth(stage, c, report);
+            }
         }
     }
     report.over_source = source > 0.0 ? toward_eye / source : (toward_eye > 0.0 ? HUGE_VAL : 0.0);

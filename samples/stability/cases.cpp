@@ -45,6 +45,25 @@ void add_extinctions(std::vector<StabilityCase>& cases) {
     }
 }
 
+/// The channels up to 8 orders of magnitude apart: 16-bit floats hold no more of one medium.
+void add_colors(std::vector<StabilityCase>& cases) {
+    for (const glm::vec3& extinction :
+         {glm::vec3(0.0F, 1e-3F, 1.0F), glm::vec3(1e-2F, 0.1F, 1e6F), glm::vec3(0.5F, 0.0F, 0.02F)}) {
+        StabilityCase test{.name = "colored_extinction",
+                           .parameter = value_text(static_cast<double>(extinction.r)) + ", " +
+                                        value_text(static_cast<double>(extinction.g)) + ", " +
+                                        value_text(static_cast<double>(extinction.b), "1/m")};
+        const float most = std::max({extinction.r, extinction.g, extinction.b});
+        test.scene = fog_before_a_wall(most);
+        test.scene.fog.medium.homogeneous.extinction_color = extinction / most;
+        test.scene.sun = even_sun();
+        test.scene.fog.medium.ambient_radiance = glm::vec3(0.5F);
+        test.bound = smooth_bound;
+        test.quick = extinction.b == 1e6F;
+        cases.push_back(std::move(test));
+    }
+}
+
 void add_phases(std::vector<StabilityCase>& cases) {
     for (const double g : {-0.999, -0.9, -0.5, 0.0, 0.5, 0.9, 0.999}) {
         StabilityCase test{.name = "phase_g", .parameter = value_text(g)};
@@ -266,6 +285,7 @@ PrecisionScene fog_before_a_wall(float extinction_per_m) {
 std::vector<StabilityCase> stability_cases() {
     std::vector<StabilityCase> cases;
     add_extinctions(cases);
+    add_colors(cases);
     add_phases(cases);
     add_ranges(cases);
     for (StabilityCase& test : light_cases()) {

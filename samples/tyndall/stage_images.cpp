@@ -158,8 +158,9 @@ tl::expected<void, engine::Error> StageImages::declare(rg::GraphBuilder& graph, 
                                                        const volumetrics::Settings& settings,
                                                        std::uint32_t light_count) {
     const volumetrics::StageResources& stages = feature.stages();
+    const bool colored = feature.volume() && feature.volume()->colored;
     tl::expected<void, engine::Error> done;
-    done = capture_image(graph, {.name = "density", .kind = Kind::density}, stages.density);
+    done = capture_image(graph, {.name = "density", .kind = Kind::density, .colored = colored}, stages.density);
     if (done) {
         done = capture_image(graph, {.name = "esm", .kind = Kind::esm, .esm_exponent = settings.shadow.esm_exponent[0]},
                              stages.esm);
@@ -168,7 +169,8 @@ tl::expected<void, engine::Error> StageImages::declare(rg::GraphBuilder& graph, 
         done = capture_image(graph, {.name = "lighting", .kind = Kind::radiance}, feature.volume()->in_scattered);
     }
     if (done && feature.volume()) {
-        done = capture_image(graph, {.name = "accumulated", .kind = Kind::accumulated}, feature.volume()->accumulated);
+        done = capture_image(graph, {.name = "accumulated", .kind = Kind::accumulated, .colored = colored},
+                             feature.volume()->accumulated);
     }
     if (done && feature.clusters()) {
         const gpu::LightClusters clusters = volumetrics::light_clusters(settings.grid, light_count, {});
@@ -187,8 +189,15 @@ std::vector<StageValues> StageImages::values() const {
     for (const Capture& capture : captures_) {
         if (capture.kind != Kind::clusters) {
             const std::size_t texels = std::size_t{capture.width} * capture.height * capture.slices;
-            all.push_back({capture.name, capture.width, capture.height, capture.slices,
-                           as_floats(capture.buffer, capture.image.format, texels)});
+            std::vector<float> values = as_floats(capture.buffer, capture.image.format, texels);
+            if (capture.colored) {
+                const auto half = static_cast<std::ptrdiff_t>(values.size() / 2);
+                all.push_back({capture.name + " of each channel", capture.width, capture.height, capture.slices / 2,
+                               std::vector<float>(values.begin() + half, values.end())});
+                values.resize(values.size() / 2);
+            }
+            all.push_back({capture.name, capture.width, capture.height,
+                           capture.colored ? capture.slices / 2 : capture.slices, std::move(values)});
         }
     }
     return all;

@@ -45,6 +45,7 @@ private:
         std::uint32_t height = 1;
         std::uint32_t words = 1; ///< clusters: of a mask
         float esm_exponent = 1.0F;
+        bool colored = false; ///< the second half of the slices holds what each channel has of its own
     };
     /// Where the picture lands: memory of the capture, imported into the graph.
     [[nodiscard]] tl::expected<rg::Buffer, engine::Error> host_buffer(rg::GraphBuilder& graph, Capture& capture,

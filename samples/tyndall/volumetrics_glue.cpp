@@ -20,6 +20,7 @@ tl::expected<VolumetricsGlue, engine::Error> VolumetricsGlue::create(const engin
                                       .pipeline_cache = cache,
                                       .memory_properties = device.memory_properties(),
                                       .frames_in_flight = frames_in_flight,
+                                      .dual_source_blending = device.info().dual_source_blending,
                                       .queue_families = device.queue_families()});
     if (!feature) {
         return tl::unexpected(engine::Error{feature.error().message});
@@ -81,7 +82,7 @@ void VolumetricsGlue::frame_begin(rg::GraphBuilder& graph, rg::Blackboard& black
         keep_error(feature_->declare_frame_begin(graph, {.lights = lights.lights}));
     }
     if (const std::optional<volumetrics::LightWay> way = feature_->light_way()) {
-        blackboard.put(engine::Air{way->medium, way->march.volumes, way->march.octaves});
+        blackboard.put(engine::Air{way->medium, way->march.volumes, way->march.octaves, way->colored});
     }
     if (feature_->clusters()) {
         blackboard.put(engine::LightClusters{feature_->clusters()->masks, feature_->clusters()->parameters});
@@ -101,7 +102,7 @@ void VolumetricsGlue::after_shadow_maps(rg::GraphBuilder& graph, rg::Blackboard&
     if (feature_->volume()) {
         const volumetrics::VolumeResources& volume = *feature_->volume();
         blackboard.put(engine::ScatteringVolumeImages{volume.accumulated, volume.in_scattered, volume.parameters,
-                                                      volume.airlight_features});
+                                                      volume.airlight_features, volume.colored});
     }
 }
 

@@ -92,4 +92,26 @@ FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
     return FarFog(radiance, attenuation);
 }
 
+// The same where each channel has an extinction of its own.
+struct ColoredFarFog {
+    vec3 radiance;
+    vec3 transmittance;
+};
+
+FarFog far_fog_of_channel(FarField far, vec2 color, vec3 start, vec3 slope, float depth_m) {
+    far.homogeneous.w *= color.x;
+    far.height.w *= color.y;
+    return far_fog(far, start, slope, depth_m);
+}
+
+ColoredFarFog colored_far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
+    vec3 even = far.homogeneous_color.rgb;
+    vec3 low = far.height_color.rgb;
+    FarFog r = far_fog_of_channel(far, vec2(even.r, low.r), start, slope, depth_m);
+    FarFog g = far_fog_of_channel(far, vec2(even.g, low.g), start, slope, depth_m);
+    FarFog b = far_fog_of_channel(far, vec2(even.b, low.b), start, slope, depth_m);
+    return ColoredFarFog(vec3(r.radiance.r, g.radiance.g, b.radiance.b),
+                         vec3(r.transmittance, g.transmittance, b.transmittance));
+}
+
 #endif

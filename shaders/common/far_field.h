@@ -21,6 +21,8 @@ struct PhaseTerms {
 
 struct FarField {
     vec4 homogeneous;     // rgb albedo; w: extinction, 1/m
+    vec4 homogeneous_color; // rgb: extinction of each channel in parts of that, where the medium is coloured
+    vec4 height_color;      // the same of the height fog
     vec4 height;          // rgb albedo; w: extinction at and below the base, 1/m
     vec4 up;              // xyz: the world's up in view space; w: height of view space's origin above the base, m
     vec4 sun_direction;   // xyz: unit direction in which it travels, view space; w: 1 where the height fog

@@ -13,8 +13,6 @@ float air_optical_depth(vec4 air, vec3 point, vec3 way) {
     return length(way) * (air.x + air.y * mean_height_density(height_m, height_m + way.y, air.z));
 }
 
-float air_transmittance(vec4 air, vec3 point, vec3 way) { return exp(-air_optical_depth(air, point, way)); }
-
 // From outside the air, against the unit direction `travel`. Fog without end in that direction takes nothing: the
 // illuminance of a sun is what arrives through it.
 float air_optical_depth_to_sun(vec4 air, vec3 point, vec3 travel) {
@@ -23,10 +21,6 @@ float air_optical_depth_to_sun(vec4 air, vec3 point, vec3 travel) {
     float above_m = exp(-air.z * max(height_m, 0.0)) / max(air.z, 1e-30);
     float column_m = min((above_m + max(-height_m, 0.0)) / max(climb, 1e-30), 1e30);
     return mix(0.0, air.y * column_m, climb > 0.0 && air.z > 0.0);
-}
-
-float air_transmittance_of_sun(vec4 air, vec3 point, vec3 travel) {
-    return exp(-air_optical_depth_to_sun(air, point, travel));
 }
 
 #endif

@@ -27,32 +27,42 @@ vec2 span_of_volumes(vec3 point, vec3 direction, float way_m) {
     return span;
 }
 
-// Optical depth that volumes and noise add to fog of the extinctions `base` (x: homogeneous, y: height fog's at its base,
-// 1/m) between `span.x` and `span.y` metres of the way; negative where they take from it. Each of the steps, the next
+// Optical depth of each channel that volumes and noise add to fog of the extinctions `base` (x: homogeneous, y: height
+// fog's at its base, 1/m) between `span.x` and `span.y` metres of the way; negative where they take from it. Each of the steps, the next
 // `growth` times as long as the one before, sees the volumes by their exact overlap with it and the noise at its middle.
-float marched_change(vec2 base, vec3 point, vec3 direction, vec2 span, float growth) {
+vec3 marched_change(vec2 base, vec3 point, vec3 direction, vec2 span, float growth) {
     float steps = MEDIUM.march.y;
     float whole = growth > 1.0 ? (pow(growth, steps) - 1.0) / (growth - 1.0) : steps;
     float t = span.x;
     float dt = (span.y - span.x) / whole;
-    float sum = 0.0;
+    vec3 sum = vec3(0.0);
     for (float i = 0.0; i < steps; i += 1.0) {
         vec3 near = point + t * direction;
         vec3 far = point + (t + dt) * direction;
         float mean = mean_height_density(MEDIUM.air.w + near.y, MEDIUM.air.w + far.y, MEDIUM.air.z);
         float before = (base.x + base.y * mean) * MEDIUM.density_scale.x;
         vec4 medium = vec4(0.0, 0.0, 0.0, before);
+        vec3 extinction = vec3(0.0);
+        vec3 colored_before = vec3(0.0);
+        if (COLORED_EXTINCTION) {
+            colored_before = (base.x * MEDIUM.homogeneous_color.rgb + base.y * mean * MEDIUM.height_color.rgb) *
+                             MEDIUM.density_scale.x;
+            extinction = colored_before;
+        }
         if (light_volumes) {
             vec3 emission = vec3(0.0);
             for (uint v = 0u; v < uint(MEDIUM.march.x); ++v) {
-                blend_local_volume(MEDIUM.volumes[v], near, far, medium, emission);
+                blend_local_volume(MEDIUM.volumes[v], near, far, medium, extinction, emission);
             }
         }
         if (light_octaves > 0u) {
             vec3 p = (0.5 * (near + far)) * MEDIUM.noise_cells.x + MEDIUM.noise_origin.xyz;
-            medium.a *= octave_noise(p, 0.5 * dt * MEDIUM.noise_cells.x, MEDIUM.noise_origin.w, MEDIUM.noise_cells.y, light_octaves);
+            float factor = octave_noise(p, 0.5 * dt * MEDIUM.noise_cells.x, MEDIUM.noise_origin.w, MEDIUM.noise_cells.y,
+                                        light_octaves);
+            medium.a *= factor;
+            extinction *= factor;
         }
-        sum += (medium.a - before) * dt;
+        sum += COLORED_EXTINCTION ? (extinction - colored_before) * dt : vec3((medium.a - before) * dt);
         t += dt;
         dt *= growth;
     }
@@ -60,14 +70,18 @@ float marched_change(vec2 base, vec3 point, vec3 direction, vec2 span, float gro
 }
 
 // Transmittance of the straight way from a point to a light, `way` metres off.
-float light_transmittance(vec3 point, vec3 way) {
+vec3 light_transmittance(vec3 point, vec3 way) {
+    vec3 tau = vec3(air_optical_depth(MEDIUM.air, point, way));
+    if (COLORED_EXTINCTION) {
+        tau = air_optical_depth(vec4(MEDIUM.air.x, 0.0, MEDIUM.air.zw), point, way) * MEDIUM.homogeneous_color.rgb +
+              air_optical_depth(vec4(0.0, MEDIUM.air.yzw), point, way) * MEDIUM.height_color.rgb;
+    }
     if (!light_volumes && light_octaves == 0u) {
-        return air_transmittance(MEDIUM.air, point, way);
+        return exp(-tau);
     }
     float way_m = length(way);
     vec3 direction = way / max(way_m, 1e-20);
     vec2 span = light_octaves > 0u ? vec2(0.0, way_m) : span_of_volumes(point, direction, way_m);
-    float tau = air_optical_depth(MEDIUM.air, point, way);
     if (span.x < span.y) {
         tau += marched_change(MEDIUM.air.xy, point, direction, span, 1.0);
     }
@@ -77,9 +91,13 @@ float light_transmittance(vec3 point, vec3 way) {
 // From outside the medium, against the unit direction `travel`. Fog without end in that direction counts nothing: volumes
 // and noise change none of it, either. Noise is followed through 6 scale heights of the height fog, and as far as the
 // steps can see it; beyond, its mean remains.
-float sun_transmittance(vec3 point, vec3 travel) {
+vec3 sun_transmittance(vec3 point, vec3 travel) {
+    vec3 tau = vec3(air_optical_depth_to_sun(MEDIUM.air, point, travel));
+    if (COLORED_EXTINCTION) {
+        tau *= MEDIUM.height_color.rgb;
+    }
     if (!light_volumes && light_octaves == 0u) {
-        return air_transmittance_of_sun(MEDIUM.air, point, travel);
+        return exp(-tau);
     }
     vec3 direction = -travel;
     bool thins_out = direction.y > 0.0 && MEDIUM.air.z > 0.0;
@@ -94,7 +112,6 @@ float sun_transmittance(vec3 point, vec3 travel) {
         float seen_m = MEDIUM.march.w * MEDIUM.march.y / MEDIUM.noise_cells.x;
         span = vec2(0.0, max(span.y, mix(0.0, min(rise_m / max(direction.y, 1e-30), seen_m), base.y > 0.0)));
     }
-    float tau = air_optical_depth_to_sun(MEDIUM.air, point, travel);
     if (span.x < span.y) {
         tau += marched_change(base, point, direction, span, light_octaves > 0u ? MEDIUM.march.z : 1.0);
     }

@@ -5,6 +5,10 @@
 
 #include "local_volume.h"
 
+#ifndef COLORED_EXTINCTION
+#define COLORED_EXTINCTION false // a constant: each channel has an extinction of its own
+#endif
+
 // As VolumeShape and VolumeBlend of features/volumetrics/local_volume.hpp.
 const float shape_ellipsoid = 1.0;
 const float blend_subtract = 1.0;
@@ -57,11 +61,35 @@ float edge_weight(GpuLocalVolume volume, vec3 q) {
     return weight.x * weight.y * weight.z;
 }
 
+// The rest of blend_local_volume where each channel has an extinction of its own; `amount` is that of the largest.
+void blend_colored(GpuLocalVolume volume, float amount, float weight, float part, inout vec4 medium,
+                   inout vec3 extinction, inout vec3 emission) {
+    float blend = volume.edge_shape_blend.z;
+    vec3 own = amount * volume.color.rgb;
+    vec3 keep = vec3(1.0);
+    vec3 adds = vec3(1.0);
+    if (blend == blend_subtract) {
+        keep = max(1.0 - own / max(extinction, 1e-30), 0.0);
+        adds = vec3(0.0);
+    } else if (blend == blend_multiply) {
+        keep = vec3(1.0 + weight * (volume.albedo_amount.w - 1.0));
+        adds = vec3(0.0);
+    } else if (blend == blend_max) {
+        adds = vec3(greaterThan(own, extinction));
+        keep = 1.0 - adds;
+    }
+    medium.rgb = mix(medium.rgb, medium.rgb * keep + adds * volume.albedo_amount.rgb * own, part);
+    extinction = mix(extinction, extinction * keep + adds * own, part);
+    emission = mix(emission, emission * keep + adds * volume.emission.rgb * weight, part);
+}
+
 // Blends the volume into `medium` (scattering rgb, extinction a) and `emission`, means over the slice from `near` to
-// `far`. Inside the overlap the weight is its mean there, of soft edges by Gauss-Legendre with three nodes.
+// `far`. Inside the overlap the weight is its mean there, of soft edges by Gauss-Legendre with three nodes. Where the
+// medium is coloured its extinction is `extinction`.
 // Who defines DENSITY_GRIDS, a bool, has mean_grid_weight for volumes with a grid; for others
 // its mean counts.
-void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 medium, inout vec3 emission) {
+void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 medium, inout vec3 extinction,
+                        inout vec3 emission) {
     vec3 a = shape_space(volume, near);
     vec3 d = shape_space(volume, far) - a;
     vec2 overlap = overlap_with_shape(volume, a, d, 1.0);
@@ -84,6 +112,10 @@ void blend_local_volume(GpuLocalVolume volume, vec3 near, vec3 far, inout vec4 m
     weight *= volume.emission.a;
 #endif
     float amount = weight * volume.albedo_amount.w;
+    if (COLORED_EXTINCTION) {
+        blend_colored(volume, amount, weight, part, medium, extinction, emission);
+        return;
+    }
     vec4 own = vec4(volume.albedo_amount.rgb, 1.0) * amount;
     float blend = volume.edge_shape_blend.z;
     vec3 own_emission = volume.emission.rgb * weight;

@@ -10,6 +10,10 @@ float phi1(float x, float attenuation) {
     return mix((1.0 - attenuation) / x, series, abs(x) < 0.25);
 }
 
+vec3 phi1(vec3 x, vec3 attenuation) {
+    return vec3(phi1(x.r, attenuation.r), phi1(x.g, attenuation.g), phi1(x.b, attenuation.b));
+}
+
 float phi1(float x) { return phi1(x, exp(-x)); }
 
 #endif

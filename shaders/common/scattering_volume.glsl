@@ -2,13 +2,17 @@
 // the light that particles receive, are read.
 //
 // Bindings that the caller makes: a uniform buffer that begins with a ScatteringVolume, `accumulated` (2D array, N + 1
-// layers, rgb radiance, a optical depth) and `in_scattered` (3D, N slices), both with a linear sampler that clamps.
+// layers, rgb radiance, a optical depth; where extinction is coloured, N + 1 more, rgb optical depth of each channel) and `in_scattered` (3D, N slices), both with a linear sampler that clamps.
 #ifndef TYNDALL_SHADERS_COMMON_SCATTERING_VOLUME_GLSL
 #define TYNDALL_SHADERS_COMMON_SCATTERING_VOLUME_GLSL
 
 #include "depth_law.glsl"
 #include "far_field.glsl"
 #include "scattering_volume.h"
+
+#ifndef COLORED_EXTINCTION
+#define COLORED_EXTINCTION false // a constant: each channel has an extinction of its own
+#endif
 
 // View-space xy of uv's column at depth z (m).
 vec2 column_xy(ScatteringVolume volume, vec2 uv, float depth_m) {
@@ -42,6 +46,15 @@ float density_tilt(float x, float x_neighbour, float length_ratio, float directi
     return x > 0.0 ? clamp(-0.5 * slope / x, -0.9, 0.9) : 0.0;
 }
 
+// Optical depth between the eye and a point at fraction f of a slice, from those of the slice's boundaries and of the
+// neighbour's outer one (x), and the part of the slice's radiance that lies in front of it (y); see scattering_lookup.
+vec2 part_of_slice(float near, float far, float outer, float f, float length_ratio, float direction) {
+    float x = max(far - near, 0.0);
+    float x_neighbour = max(direction < 0.0 ? near - outer : outer - far, 0.0);
+    float g = f + density_tilt(x, x_neighbour, length_ratio, direction) * f * (1.0 - f);
+    return vec2(near + g * x, g * phi1(g * x) / phi1(x));
+}
+
 // Radiance scattered toward the eye in front of a point, and the transmittance from it to the eye. `depth_m` is the
 // point's view depth. Beyond the range the ray goes on in closed form, so that both are continuous there; in front of
 // the eye there is no fog.
@@ -67,20 +80,39 @@ void scattering_lookup(ScatteringVolume volume, sampler2DArray accumulated, vec2
     float neighbour_m = k > 0.0 ? near_m - outer_m : outer_m - near_m - length_m;
     vec4 near = textureLod(accumulated, vec3(p, k), 0.0);
     vec4 far = textureLod(accumulated, vec3(p, k + 1.0), 0.0);
-    float tau_outer = textureLod(accumulated, vec3(p, outer), 0.0).a;
-
-    float x = max(far.a - near.a, 0.0);
-    float x_neighbour = max(k > 0.0 ? near.a - tau_outer : tau_outer - far.a, 0.0);
-    float g = f + density_tilt(x, x_neighbour, neighbour_m / length_m, direction) * f * (1.0 - f);
-    radiance = (near.rgb + (far.rgb - near.rgb) * (g * phi1(g * x) / phi1(x))) * volume.scale.y;
-    transmittance = vec3(exp(-(near.a + g * x)));
+    float ratio = neighbour_m / length_m;
+    vec3 share;
+    if (COLORED_EXTINCTION) {
+        float first = slices + 1.0;
+        vec3 tau_near = textureLod(accumulated, vec3(p, first + k), 0.0).rgb;
+        vec3 tau_far = textureLod(accumulated, vec3(p, first + k + 1.0), 0.0).rgb;
+        vec3 tau_outer = textureLod(accumulated, vec3(p, first + outer), 0.0).rgb;
+        vec2 r = part_of_slice(tau_near.r, tau_far.r, tau_outer.r, f, ratio, direction);
+        vec2 g = part_of_slice(tau_near.g, tau_far.g, tau_outer.g, f, ratio, direction);
+        vec2 b = part_of_slice(tau_near.b, tau_far.b, tau_outer.b, f, ratio, direction);
+        share = vec3(r.y, g.y, b.y);
+        transmittance = exp(-vec3(r.x, g.x, b.x));
+    } else {
+        float tau_outer = textureLod(accumulated, vec3(p, outer), 0.0).a;
+        vec2 part = part_of_slice(near.a, far.a, tau_outer, f, ratio, direction);
+        share = vec3(part.y);
+        transmittance = vec3(exp(-part.x));
+    }
+    radiance = (near.rgb + (far.rgb - near.rgb) * share) * volume.scale.y;
 
     float range_m = volume.law.range_shape.x;
     vec3 slope = vec3(uv * volume.slope.xy + volume.slope.zw, -1.0);
     vec3 start = vec3(column_xy(volume, uv, range_m), -range_m);
-    FarFog beyond = far_fog(volume.beyond, start, slope, max(depth_m - range_m, 0.0));
-    radiance += transmittance * beyond.radiance;
-    transmittance *= beyond.transmittance;
+    float beyond_m = max(depth_m - range_m, 0.0);
+    if (COLORED_EXTINCTION) {
+        ColoredFarFog beyond = colored_far_fog(volume.beyond, start, slope, beyond_m);
+        radiance += transmittance * beyond.radiance;
+        transmittance *= beyond.transmittance;
+    } else {
+        FarFog beyond = far_fog(volume.beyond, start, slope, beyond_m);
+        radiance += transmittance * beyond.radiance;
+        transmittance *= beyond.transmittance;
+    }
 }
 
 // Light that a particle at a point sends to the eye per unit of albedo: radiance in-scattered there per unit of

@@ -15,6 +15,8 @@ layout(set = 0, binding = 0) uniform Frame { FrameParameters frame; };
 layout(constant_id = 2) const bool air_weakens_light = false; // on its way to surfaces
 layout(constant_id = 3) const bool light_volumes = false;     // 3 and 4: see light_march.glsl
 layout(constant_id = 4) const uint light_octaves = 0u;
+layout(constant_id = 6) const bool has_color = false; // extinction differs between the channels
+#define COLORED_EXTINCTION has_color
 #define MEDIUM frame.medium
 #include "common/light_march.glsl"
 #if SUN_SHADOW

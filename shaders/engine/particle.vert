@@ -21,6 +21,8 @@ layout(set = 0, binding = 7) uniform sampler2DArray local_shadow_maps; // depth,
 layout(set = 0, binding = 8, std430) readonly restrict buffer LocalShadows { LocalShadow local_shadows[]; };
 #endif
 layout(constant_id = 0) const uint airlight_features = 0u;
+layout(constant_id = 1) const bool has_color = false; // extinction differs between the channels
+#define COLORED_EXTINCTION has_color
 #include "common/airlight.glsl"
 layout(set = 0, binding = 4) uniform Volume {
     ScatteringVolume volume;

@@ -5,6 +5,9 @@
 // tau += x. The default, w = phi1, is exact for a constant medium, divides by no sigma and is a convex combination, so
 // bounded by the brightest source whatever x. The others are in integrators.glsl.
 //
+// COLORED 1: each channel has an extinction of its own, read from the second half of `density`; N + 1 more layers hold the
+// optical depth of each (rgb), the first ones' a the largest.
+//
 // EMISSION 1: the medium emits, too. L is then no more than the smaller of the brightest j / sigma_t and the sum of j dt.
 //
 // ESTIMATE 1: what another scheme makes of the same samples is summed beside, and the difference at the last boundary
@@ -15,6 +18,9 @@
 layout(constant_id = 4) const bool has_depth_curve = false;
 #define DEPTH_CURVE has_depth_curve
 
+#if COLORED
+#define COLORED_EXTINCTION true
+#endif
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/integrators.glsl"
 #include "volumetrics/interop.h"
@@ -38,7 +44,25 @@ const bool needs_parabola = integrator == exponential_quadratic;
 #endif
 const uint companion = integrator == exponential_quadratic ? exponential : exponential_quadratic;
 
-float density_of(ivec2 column, int k) { return imageLoad(density, ivec3(column, k)).a; }
+#if COLORED
+vec3 extinction_of(ivec2 column, int k, vec4 medium) {
+    return imageLoad(density, ivec3(column, k + int(u.volume.grid.z))).rgb;
+}
+#else
+float extinction_of(ivec2 column, int k, vec4 medium) { return medium.a; }
+#endif
+
+SPECTRUM density_of(ivec2 column, int k) { return extinction_of(column, k, imageLoad(density, ivec3(column, k))); }
+
+void store(ivec2 column, int boundary, vec3 radiance, SPECTRUM tau) {
+#if COLORED
+    float most = max(tau.r, max(tau.g, tau.b));
+    imageStore(accumulated, ivec3(column, boundary + int(u.volume.grid.z) + 1), storable(vec4(tau, 0.0)));
+#else
+    float most = tau;
+#endif
+    imageStore(accumulated, ivec3(column, boundary), storable(vec4(radiance, most)));
+}
 
 // Radiance gained per metre in slice k of this scattering coefficient, times density_scale.
 vec3 source_of(ivec2 column, int k, vec3 scattering) {
@@ -65,24 +89,25 @@ float length_after(int k, float steps, float dt) {
 SliceNode slice_node(ivec2 column, int k, float dt) {
     int last = int(u.volume.grid.z) - 1;
     vec4 medium = imageLoad(density, ivec3(column, k));
-    float before = k > 0 ? density_of(column, k - 1) : 2.0 * medium.a - density_of(column, 1);
-    float after = k < last ? density_of(column, k + 1) : 2.0 * medium.a - density_of(column, last - 1);
+    SPECTRUM here = extinction_of(column, k, medium);
+    SPECTRUM before = k > 0 ? density_of(column, k - 1) : 2.0 * here - density_of(column, 1);
+    SPECTRUM after = k < last ? density_of(column, k + 1) : 2.0 * here - density_of(column, last - 1);
     SliceNode node;
     node.source = source_of(column, k, medium.rgb);
-    node.extinction = medium.a;
-    node.x = medium.a * dt;
+    node.extinction = here;
+    node.x = here * dt;
     float ratio = has_depth_curve ? length_after(k, k < last ? 1.0 : -1.0, 1.0) : u.volume.slice.z;
-    node.middle = optical_depth_of_middle(before, medium.a, after, k < last || !has_depth_curve ? ratio : 1.0 / ratio, dt);
+    node.middle = optical_depth_of_middle(before, here, after, k < last || !has_depth_curve ? ratio : 1.0 / ratio, dt);
     return node;
 }
 
 // `mean_source` of slice k of length dt: the parabola goes through the middles of its neighbours, at an end of the
 // column through those of the next two slices.
 vec3 parabolic_source(ivec2 column, int k, float dt, SliceNode before, SliceNode here, SliceNode after,
-                      float attenuation) {
+                      SPECTRUM attenuation) {
     int last = int(u.volume.grid.z) - 1;
-    float a = before.middle - before.x;
-    float c = here.x + after.middle;
+    SPECTRUM a = before.middle - before.x;
+    SPECTRUM c = here.x + after.middle;
     if (k == 0) {
         before = slice_node(column, 2, length_after(k, 2.0, dt));
         a = here.x + after.x + before.middle;
@@ -105,9 +130,9 @@ void main() {
     float dt = slice_depth(u.volume, 0.0, 0.0) * column_stretch(u.volume, uv) * u.density_scale.y;
     vec3 radiance = vec3(0.0);
     vec3 companion_radiance = vec3(0.0);
-    float tau = 0.0;
-    float transmittance = 1.0;
-    imageStore(accumulated, ivec3(column, 0), vec4(0.0));
+    SPECTRUM tau = SPECTRUM(0.0);
+    SPECTRUM transmittance = SPECTRUM(1.0);
+    store(column, 0, radiance, tau);
     SliceNode before;
     SliceNode here;
     if (needs_parabola) {
@@ -117,7 +142,7 @@ void main() {
     for (int k = 0; k < grid.z; ++k) {
         vec3 source;
         vec3 parabola;
-        float x;
+        SPECTRUM x;
         Attenuation attenuation;
         if (needs_parabola) {
             SliceNode after = here;
@@ -133,18 +158,18 @@ void main() {
         } else {
             vec4 medium = imageLoad(density, ivec3(column, k));
             source = source_of(column, k, medium.rgb);
-            x = medium.a * dt;
+            x = extinction_of(column, k, medium) * dt;
             attenuation = attenuation_of(x);
         }
-        float weight = transmittance * dt * mean_transmittance(integrator, x, attenuation);
+        SPECTRUM weight = transmittance * dt * mean_transmittance(integrator, x, attenuation);
         radiance += (integrator == exponential_quadratic ? parabola : source) * weight;
 #if ESTIMATE
-        float companion_weight = transmittance * dt * mean_transmittance(companion, x, attenuation);
+        SPECTRUM companion_weight = transmittance * dt * mean_transmittance(companion, x, attenuation);
         companion_radiance += (companion == exponential_quadratic ? parabola : source) * companion_weight;
 #endif
         tau += x;
         transmittance *= attenuation.across;
-        imageStore(accumulated, ivec3(column, k + 1), storable(vec4(radiance, tau)));
+        store(column, k + 1, radiance, tau);
         dt = has_depth_curve ? length_after(k, 1.0, dt) : dt + dt * u.volume.scale.z;
     }
 #if ESTIMATE

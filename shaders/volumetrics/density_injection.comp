@@ -1,11 +1,14 @@
 // Media -> scattering coefficient (rgb) and extinction (a) of each froxel, times density_scale so that fp16 holds thin
 // and dense media alike. One pass, specialised to the media that are there. EMISSION 1: and the radiance gained per
-// metre (rgb), times emission_scale. TEXTURES 1: media of textures may be there.
+// metre (rgb), times emission_scale. TEXTURES 1: media of textures may be there. Where extinction is coloured the volume is
+// twice as deep: behind the N slices stand N with the extinction of each channel (rgb).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 layout(constant_id = 8) const bool has_depth_curve = false;
 #define DEPTH_CURVE has_depth_curve
+layout(constant_id = 9) const bool has_color = false;
+#define COLORED_EXTINCTION has_color
 
 #include "common/height_density.glsl"
 #include "common/noise.glsl"
@@ -28,9 +31,9 @@ layout(set = 0, binding = 2, VOLUME_FORMAT) uniform writeonly restrict image3D e
 #if TEXTURES
 layout(set = 0, binding = 3) uniform sampler3D noise_shape; // these repeat in every direction
 layout(set = 0, binding = 4) uniform sampler3D noise_detail;
-layout(constant_id = 9) const bool has_baked_noise = false;
-layout(constant_id = 10) const bool has_map = false;
-layout(constant_id = 11) const bool has_grids = false;
+layout(constant_id = 10) const bool has_baked_noise = false;
+layout(constant_id = 11) const bool has_map = false;
+layout(constant_id = 12) const bool has_grids = false;
 #define DENSITY_GRIDS has_grids
 #include "volumetrics/density_textures.glsl"
 #else
@@ -80,27 +83,39 @@ void main() {
     float far_m = near_m + slice_depth(u.volume, float(froxel.z), near_m);
 
     vec4 medium = vec4(0.0);
+    vec3 extinction = vec3(0.0); // where it is coloured
     vec3 emission = vec3(0.0);
     if (has_homogeneous) {
-        medium += vec4(u.homogeneous.rgb, 1.0) * u.homogeneous.w;
+        vec4 parts = vec4(u.homogeneous.rgb, 1.0);
+        if (has_color) {
+            parts.rgb *= u.homogeneous_color.rgb;
+            extinction += u.homogeneous_color.rgb * u.homogeneous.w;
+        }
+        medium += parts * u.homogeneous.w;
         emission += u.homogeneous_emission.rgb;
     }
     if (has_height) {
         float eye_height = eye.y - u.height_law.x;
         float mean = mean_height_density(eye_height + ray.y * near_m, eye_height + ray.y * far_m, u.height_law.y);
-        medium += vec4(u.height.rgb, 1.0) * (u.height.w * mean);
+        vec4 parts = vec4(u.height.rgb, 1.0);
+        if (has_color) {
+            parts.rgb *= u.height_color.rgb;
+            extinction += u.height_color.rgb * (u.height.w * mean);
+        }
+        medium += parts * (u.height.w * mean);
         emission += u.height_emission.rgb * mean;
     }
 #if TEXTURES
     if (has_map) {
         float kept = mean_map_density(eye + ray * near_m, eye + ray * far_m);
         medium *= kept;
+        extinction *= kept;
         emission *= kept;
     }
 #endif
     if (has_volumes) {
         for (uint i = 0u; i < u.frame.z; ++i) {
-            blend_local_volume(u.volumes[i], eye + ray * near_m, eye + ray * far_m, medium, emission);
+            blend_local_volume(u.volumes[i], eye + ray * near_m, eye + ray * far_m, medium, extinction, emission);
         }
     }
     if (noise_octaves > 0u || has_baked_noise) {
@@ -109,7 +124,12 @@ void main() {
         float froxel_m = max(max(abs(cell.x), abs(cell.y)), (far_m - near_m) * length(ray));
         float factor = noise_factor(eye + ray * middle_m, froxel_m);
         medium *= factor;
+        extinction *= factor;
         emission *= factor;
+    }
+    if (has_color) {
+        medium.a = max(extinction.r, max(extinction.g, extinction.b));
+        imageStore(density, froxel + ivec3(0, 0, int(grid.z)), storable(vec4(extinction, 0.0)));
     }
     imageStore(density, froxel, storable(medium));
 #if EMISSION

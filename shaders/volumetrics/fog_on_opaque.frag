@@ -1,6 +1,7 @@
 // Opaque colour -> colour times transmittance plus in-scattered radiance, at each pixel's own depth. The blend unit does
-// it: source factor ONE, destination factor SRC_ALPHA. A pixel without surface gets the fog of the whole ray to
-// infinity, wherever the far plane lies. Lights that the froxels leave out are integrated here.
+// it: source factor ONE, destination factor SRC_ALPHA, or, with COLORED 1, that of a second source: each channel has a
+// transmittance of its own. A pixel without surface gets the fog of the whole ray to infinity, wherever the far plane lies.
+// Lights that the froxels leave out are integrated here.
 //
 // LOCAL_SHADOW 1: one of them casts shadows.
 #version 460
@@ -14,6 +15,9 @@ layout(constant_id = 0) const uint airlight_features = 0u;
 layout(set = 0, binding = 3) uniform sampler2DArray local_shadow_maps; // nearest, clamps
 layout(set = 0, binding = 4, std430) readonly restrict buffer LocalShadows { LocalShadow local_shadows[]; };
 #endif
+#if COLORED
+#define COLORED_EXTINCTION true
+#endif
 #include "common/airlight.glsl"
 #include "common/scattering_volume.glsl"
 #include "volumetrics/interop.h"
@@ -22,7 +26,12 @@ layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1) uniform sampler2D scene_depth;      // nearest
 layout(set = 0, binding = 2) uniform sampler2DArray accumulated; // linear, clamps
 
+#if COLORED
+layout(location = 0, index = 0) out vec4 fog;
+layout(location = 0, index = 1) out vec4 passes;
+#else
 layout(location = 0) out vec4 fog;
+#endif
 
 void main() {
     float d = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
@@ -38,4 +47,7 @@ void main() {
         pixel_path(u.volume, uv, depth_m, start, normalize(ray), interleaved_noise(gl_FragCoord.xy));
     ADD_AIRLIGHT(u.volume, u.airlights, path, radiance)
     fog = vec4(radiance, transmittance.r);
+#if COLORED
+    passes = vec4(transmittance, 1.0);
+#endif
 }

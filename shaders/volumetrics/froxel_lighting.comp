@@ -13,6 +13,8 @@
 
 layout(constant_id = 12) const bool has_depth_curve = false;
 #define DEPTH_CURVE has_depth_curve
+layout(constant_id = 17) const bool has_color = false;
+#define COLORED_EXTINCTION has_color
 
 #include "common/lights.glsl"
 #include "volumetrics/froxel.glsl"
@@ -36,7 +38,7 @@ layout(constant_id = 13) const uint light_changes = 2; // 0: since the frame bef
 layout(constant_id = 14) const bool air_weakens_light = false; // on its way to the froxel
 layout(constant_id = 15) const bool light_volumes = false;     // 15 and 16: see light_march.glsl
 layout(constant_id = 16) const uint light_octaves = 0u;
-layout(constant_id = 17) const bool leaves_out_lights = false; // which each pixel integrates along its ray
+layout(constant_id = 18) const bool leaves_out_lights = false; // which each pixel integrates along its ray
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1, VOLUME_FORMAT) uniform writeonly restrict image3D in_scattered;
@@ -81,10 +83,16 @@ vec3 sun_scattering(RaySegment segment, float depth_m) {
     SUN_VISIBILITY(cascades, cascade_count, shadow_map, u.esm_exponents, size, sun_visibility, visibility_taps,
                    segment, depth_m, visibility)
 #endif
+    vec3 illuminance = u.sun_illuminance.rgb;
     if (air_weakens_light) {
-        visibility *= sun_transmittance(segment.position, u.sun_direction.xyz);
+        vec3 passes = sun_transmittance(segment.position, u.sun_direction.xyz);
+        if (has_color) {
+            illuminance *= passes;
+        } else {
+            visibility *= passes.r;
+        }
     }
-    return u.sun_illuminance.rgb * (visibility * phase_function(phase_angle(u.sun_direction.xyz, segment.to_eye)));
+    return illuminance * (visibility * phase_function(phase_angle(u.sun_direction.xyz, segment.to_eye)));
 }
 
 #if LIGHTS

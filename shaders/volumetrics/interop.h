@@ -32,6 +32,8 @@ struct VolumetricParameters {
     mat4 previous_view_from_view; // where a point of this frame's view space was in the frame before's
     vec4 homogeneous;     // rgb albedo; w: extinction, 1/m, times density_scale
     vec4 height;          // rgb albedo; w: extinction at and below the base, 1/m, times density_scale
+    vec4 homogeneous_color; // rgb: extinction of each channel in parts of that, where some medium is coloured
+    vec4 height_color;      // the same of the height fog
     vec4 homogeneous_emission; // rgb, cd/m^3, times emission_scale.x; a 0
     vec4 height_emission;      // the same at and below the base
     vec4 height_law;      // x: base height above the camera, m; y: falloff, 1/m; zw 0

@@ -68,7 +68,11 @@ float scattered_inverse_square(RaySegment segment, vec3 d, vec3 to_light, float 
             vec3 to_light = d * inversesqrt(max(distance_squared, 1e-20));                                             \
             float cone = spot_cone(direction_radius.xyz, lights[index].cone.xy, to_light);                             \
             fade *= intensity_type.w > 0.5 ? cone : 1.0;                                                               \
-            fade *= air_weakens_light ? light_transmittance(segment.position, d) : 1.0;                                \
+            if (air_weakens_light) {                                                                                   \
+                vec3 passes = light_transmittance(segment.position, d);                                                \
+                intensity_type.rgb *= COLORED_EXTINCTION ? passes : vec3(1.0);                                         \
+                fade *= COLORED_EXTINCTION ? 1.0 : passes.r;                                                           \
+            }                                                                                                          \
             FADE_IN_SHADOW(lights[index].cone, segment, fade)                                                          \
             float radius_m = max(direction_radius.w, smallest_light_radius_m);                                         \
             sum += intensity_type.rgb * (fade * scattered_inverse_square(segment, d, to_light, radius_m));             \

@@ -94,13 +94,18 @@ bool make_device(TestDevice& out) {
                                                 .synchronization2 = VK_TRUE,
                                                 .dynamicRendering = VK_TRUE,
                                                 .maintenance4 = VK_TRUE};
+    VkPhysicalDeviceFeatures offered{};
+    vkGetPhysicalDeviceFeatures(out.physical, &offered);
+    out.dual_source_blending = offered.dualSrcBlend == VK_TRUE;
+    const VkPhysicalDeviceFeatures core{.dualSrcBlend = offered.dualSrcBlend};
     const char* extension = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
     const VkDeviceCreateInfo create{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                     .pNext = &features13,
                                     .queueCreateInfoCount = 1,
                                     .pQueueCreateInfos = &queue,
                                     .enabledExtensionCount = 1,
-                                    .ppEnabledExtensionNames = &extension};
+                                    .ppEnabledExtensionNames = &extension,
+                                    .pEnabledFeatures = &core};
     if (vkCreateDevice(out.physical, &create, nullptr, &out.device) != VK_SUCCESS) {
         return false;
     }

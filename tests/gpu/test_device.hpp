@@ -18,6 +18,7 @@ struct TestDevice {
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
+    bool dual_source_blending = false; ///< dualSrcBlend is enabled
     std::uint32_t family = 0;
     std::uint32_t timestamp_valid_bits = 0;
     VkPhysicalDeviceProperties properties = {};

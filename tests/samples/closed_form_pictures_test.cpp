@@ -15,6 +15,11 @@
 namespace tyndall::test {
 namespace {
 
+class PanesInFog : public ClosedFormPictures {
+protected:
+    void expect_panes_in_fog(const Color& sigma, const std::string& extinction);
+};
+
 struct Pane {
     double depth_m;
     double alpha;
@@ -23,12 +28,12 @@ struct Pane {
 
 /// Fog between the eye and each pane, each pane over what lies behind: exact for a homogeneous medium of extinction
 /// sigma that scatters `source` toward the eye.
-Color through_panes(const std::vector<Pane>& front_to_back, double stretch, double sigma, const Color& source) {
+Color through_panes(const std::vector<Pane>& front_to_back, double stretch, const Color& sigma, const Color& source) {
     Color sum = {};
     double passes = 1.0;
     for (const Pane& pane : front_to_back) {
-        const double transmittance = std::exp(-sigma * pane.depth_m * stretch);
         for (std::size_t c = 0; c < 3; ++c) {
+            const double transmittance = std::exp(-sigma[c] * pane.depth_m * stretch);
             sum[c] += passes * pane.alpha * (pane.color[c] * transmittance + source[c] * (1.0 - transmittance));
         }
         passes *= 1.0 - pane.alpha;
@@ -37,8 +42,7 @@ Color through_panes(const std::vector<Pane>& front_to_back, double stretch, doub
 }
 
 // The engine sorts: whatever the order of submission, each pane lies over those behind it and has the fog of its depth.
-TEST_F(ClosedFormPictures, TransparentPanesInFogInAnyOrder) {
-    const double sigma = 0.06;
+void PanesInFog::expect_panes_in_fog(const Color& sigma, const std::string& extinction) {
     const double albedo = 0.9;
     const Color ambient = {0.5, 0.6, 0.8};
     const Color source = {albedo * ambient[0], albedo * ambient[1], albedo * ambient[2]};
@@ -48,7 +52,8 @@ TEST_F(ClosedFormPictures, TransparentPanesInFogInAnyOrder) {
         panes.push_back({1.3 + 2.1 * i, 0.2 + 0.4 * t, {0.9 - 0.8 * t, 0.1 + 0.3 * t, 0.2 + 0.7 * t}});
     }
     panes.push_back({21.0, 1.0, {0.7, 0.6, 0.4}}); // the wall
-    write_text(folder_ / "fog.json", R"({"medium":{"homogeneous":{"extinction_per_m":0.06,"albedo":[0.9,0.9,0.9]}},
+    write_text(folder_ / "fog.json", R"({"medium":{"homogeneous":{"extinction_per_m":)" + extinction +
+                                         R"(,"albedo":[0.9,0.9,0.9]}},
         "ambient":{"radiance":[0.5,0.6,0.8]},"grid":{"width":160,"height":90,"slices":64,"range_m":40}})");
     const auto expected = [&](std::uint32_t x, std::uint32_t y) {
         return through_panes(panes, length(ray(x, y)), sigma, source);
@@ -73,6 +78,14 @@ TEST_F(ClosedFormPictures, TransparentPanesInFogInAnyOrder) {
     EXPECT_LE(fp16, 1e-2);
     EXPECT_EQ(images[1].values, images[0].values);
     EXPECT_EQ(images[2].values, images[0].values);
+}
+
+TEST_F(PanesInFog, LieOverOneAnotherInAnyOrder) {
+    expect_panes_in_fog({0.06, 0.06, 0.06}, "0.06");
+}
+
+TEST_F(PanesInFog, LieOverOneAnotherInColoredFog) {
+    expect_panes_in_fog({0.12, 0.03, 0.0}, "[0.12,0.03,0]");
 }
 
 /// A white Lambert wall without a layer above.

@@ -109,7 +109,8 @@ void FogTest::SetUp() {
     auto made = Feature::create({.vk = &vk(),
                                  .device = info.device,
                                  .memory_properties = info.memory_properties,
-                                 .frames_in_flight = info.frames_in_flight});
+                                 .frames_in_flight = info.frames_in_flight,
+                                 .dual_source_blending = gpu().dual_source_blending});
     ASSERT_TRUE(made) << made.error().message;
     feature_ = std::make_unique<Feature>(std::move(*made));
 }

@@ -75,6 +75,28 @@ TEST(FogJson, ReadsEveryKey) {
     EXPECT_EQ(s.light_path_steps, 5U);
 }
 
+TEST(FogJson, ReadsExtinctionOfEachChannel) {
+    const auto fog = parse_fog_json(R"({"medium": {
+        "homogeneous": {"extinction_per_m": [0.1, 0.4, 0]},
+        "height": {"extinction_per_m": [0, 0, 0]},
+        "volumes": [{"extinction_per_m": [2, 1, 0.5]}, {"extinction_per_m": 3}]}})");
+    ASSERT_TRUE(fog) << fog.error().message;
+    const Medium& m = fog->medium;
+    EXPECT_EQ(m.homogeneous.extinction_per_m, 0.4F);
+    EXPECT_EQ(m.homogeneous.extinction_color, glm::vec3(0.25F, 1.0F, 0.0F));
+    EXPECT_EQ(m.height.extinction_per_m, 0.0F);
+    EXPECT_EQ(m.volumes[0].extinction_per_m, 2.0F);
+    EXPECT_EQ(m.volumes[0].extinction_color, glm::vec3(1.0F, 0.5F, 0.25F));
+    EXPECT_EQ(m.volumes[1].extinction_color, glm::vec3(1.0F));
+    EXPECT_TRUE(is_colored(m));
+    EXPECT_EQ(refusal(R"({"medium": {"homogeneous": {"extinction_per_m": [1, 2]}}})"),
+              "medium.homogeneous.extinction_per_m must be a number or an array of 3 numbers.");
+    EXPECT_EQ(refusal(R"({"medium": {"height": {"extinction_per_m": [1, NaN, 2]}}})"),
+              "medium.height.extinction_per_m[1] must be between 0 and 1e+06, not nan.");
+    EXPECT_EQ(refusal(R"({"medium": {"volumes": [{"extinction_per_m": [1, 2, -3]}]}})"),
+              "medium.volumes[0].extinction_per_m[2] must be between 0 and 1e+06, not -3.");
+}
+
 TEST(FogJson, ShapeFollowsRangeUnlessGiven) {
     const auto fog = parse_fog_json(R"({"grid": {"range_m": 1000}})");
     ASSERT_TRUE(fog);

@@ -100,8 +100,9 @@ protected:
                       const std::function<TwinSlice(std::uint32_t, std::uint32_t)>& slice_of) {
         const rg::ExecutorInfo info = executor_info();
         Pipelines pipelines(vk(), info.device, VK_NULL_HANDLE);
-        const auto program = pipelines.compute(accumulation_shader(settings.storage, settings.error_estimate, false),
-                                               {8, 1, 1}, std::array{static_cast<std::uint32_t>(settings.integrator)});
+        const auto program =
+            pipelines.compute(accumulation_shader(settings.storage, false, settings.error_estimate, false), {8, 1, 1},
+                              std::array{static_cast<std::uint32_t>(settings.integrator)});
         EXPECT_TRUE(program) << program.error().message;
 
         FrameInputs inputs;

@@ -102,5 +102,41 @@ TEST(ReferenceMedium, SunThroughALocalVolume) {
     EXPECT_EQ(optical_depth_of_sky(fog, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 1e-9).value.x, 0.0);
 }
 
+// Each channel against a sum over points, of a medium in which every part takes more of one channel than of another.
+TEST(ReferenceMedium, OpticalDepthOfEachChannelEqualsItsSum) {
+    Medium medium;
+    medium.homogeneous = {.extinction_per_m = 0.2F, .extinction_color = {1.0F, 0.5F, 0.0F}};
+    medium.height = {
+        .extinction_per_m = 0.4F, .extinction_color = {0.0F, 0.5F, 1.0F}, .base_height_m = 1.0F, .falloff_per_m = 0.5F};
+    const Ray ray{{0.0, 0.5, 0.0}, glm::normalize(glm::dvec3(0.2, 0.3, -1.0))};
+    const double length_m = 12.0;
+    const auto sum = [&] {
+        constexpr int steps = 200000;
+        glm::dvec3 total(0.0);
+        for (int i = 0; i < steps; ++i) {
+            total += Fog(medium, 0.0).at(point_at(ray, length_m * (i + 0.5) / steps)).extinction * (length_m / steps);
+        }
+        return total;
+    };
+    const auto expect_near = [](const glm::dvec3& found, const glm::dvec3& expected, double error) {
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(found[c], expected[c], error) << c;
+        }
+    };
+    expect_near(optical_depth(Fog(medium, 0.0), ray, length_m, 1e-9).value, sum(), 1e-8);
+    expect_near(Fog(medium, 0.0).at({0.0, 0.0, 0.0}).extinction, {0.2, 0.3, 0.4}, 1e-7);
+    const auto volume = [](VolumeBlend blend, double z) {
+        return LocalVolume{.blend = blend,
+                           .center_m = {0.0F, 1.0F, static_cast<float>(z)},
+                           .half_size_m = {2.0F, 2.0F, 1.5F},
+                           .edge = 0.5F,
+                           .extinction_per_m = 0.3F,
+                           .extinction_color = {0.2F, 1.0F, 0.6F}};
+    };
+    medium.volumes = {volume(VolumeBlend::add, -2.0), volume(VolumeBlend::subtract, -4.0),
+                      volume(VolumeBlend::max, -6.0)};
+    expect_near(optical_depth(Fog(medium, 0.0), ray, length_m, 1e-7).value, sum(), 1e-4);
+}
+
 } // namespace
 } // namespace tyndall::volumetrics::reference

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "features/volumetrics/reference/density_texels.hpp"
 
@@ -33,7 +34,7 @@ double weight(const LocalVolume& volume, const glm::dvec3& point) {
     return ramp(volume, 1.0 - std::abs(q.x)) * ramp(volume, 1.0 - std::abs(q.y)) * ramp(volume, 1.0 - std::abs(q.z));
 }
 
-Coefficients scaled(const Coefficients& c, double factor) {
+Coefficients scaled(const Coefficients& c, const glm::dvec3& factor) {
     return {factor * c.scattering, factor * c.extinction, factor * c.emission};
 }
 
@@ -59,14 +60,23 @@ Coefficients blended(const LocalVolume& volume, const Coefficients& before, cons
     if (volume.density) {
         w *= density_at(*volume.density, place_in_grid(volume, point), false);
     }
-    const double amount = w * static_cast<double>(volume.extinction_per_m);
-    const Coefficients own{amount * glm::dvec3(volume.albedo), glm::dvec3(amount),
-                           w * glm::dvec3(volume.emission_per_m)};
+    const glm::dvec3 amount = w * static_cast<double>(volume.extinction_per_m) * glm::dvec3(volume.extinction_color);
+    const Coefficients own{amount * glm::dvec3(volume.albedo), amount, w * glm::dvec3(volume.emission_per_m)};
     switch (volume.blend) {
-    case VolumeBlend::subtract:
-        return amount > 0.0 ? scaled(before, std::fmax(0.0, 1.0 - amount / before.extinction.x)) : before;
-    case VolumeBlend::multiply: return scaled(before, 1.0 + w * (static_cast<double>(volume.factor) - 1.0));
-    case VolumeBlend::max: return amount > before.extinction.x ? own : before;
+    case VolumeBlend::subtract: {
+        glm::dvec3 left(1.0);
+        for (int c = 0; c < 3; ++c) {
+            left[c] = amount[c] > 0.0 ? std::fmax(0.0, 1.0 - amount[c] / before.extinction[c]) : 1.0;
+        }
+        return scaled(before, left);
+    }
+    case VolumeBlend::multiply: return scaled(before, glm::dvec3(1.0 + w * (static_cast<double>(volume.factor) - 1.0)));
+    case VolumeBlend::max: {
+        const glm::dvec3 keeps(glm::lessThanEqual(amount, before.extinction));
+        const Coefficients kept = scaled(before, keeps);
+        const Coefficients taken = scaled(own, 1.0 - keeps);
+        return {kept.scattering + taken.scattering, kept.extinction + taken.extinction, kept.emission + taken.emission};
+    }
     case VolumeBlend::add: break;
     }
     return {before.scattering + own.scattering, before.extinction + own.extinction, before.emission + own.emission};

@@ -19,6 +19,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nothing_left = 45.0; ///< e^-45 = 3e-20
 constexpr std::size_t most_crossings = 100000;
 
+template <typename Fog>
+glm::dvec3 extinction_of(const Fog& fog) {
+    return static_cast<double>(fog.extinction_per_m) * glm::dvec3(fog.extinction_color);
+}
+
 } // namespace
 
 double henyey_greenstein(double g, double cos_theta) {
@@ -134,11 +139,11 @@ Coefficients Fog::at(const glm::dvec3& point) const {
     const HeightFog& height = medium_->height;
     const double kept = map_density(medium_->map, point);
     const double here = kept * height_profile(point);
-    const double even = kept * static_cast<double>(homogeneous.extinction_per_m);
-    const double low = here * static_cast<double>(height.extinction_per_m);
-    const Coefficients everywhere{
-        even * glm::dvec3(homogeneous.albedo) + low * glm::dvec3(height.albedo), glm::dvec3(even + low),
-        kept * glm::dvec3(homogeneous.emission_per_m) + here * glm::dvec3(height.emission_per_m)};
+    const glm::dvec3 even = kept * extinction_of(homogeneous);
+    const glm::dvec3 low = here * extinction_of(height);
+    const Coefficients everywhere{even * glm::dvec3(homogeneous.albedo) + low * glm::dvec3(height.albedo), even + low,
+                                  kept * glm::dvec3(homogeneous.emission_per_m) +
+                                      here * glm::dvec3(height.emission_per_m)};
     return changed(everywhere, point);
 }
 
@@ -150,31 +155,35 @@ bool Fog::emits() const {
 }
 
 Coefficients Fog::ending_at(const glm::dvec3& point, const glm::dvec3& direction) const {
-    const double height = ends_toward(direction) ? map_density(medium_->map, point) * height_profile(point) *
-                                                       static_cast<double>(medium_->height.extinction_per_m)
-                                                 : 0.0;
-    return changed({.scattering = height * glm::dvec3(medium_->height.albedo), .extinction = glm::dvec3(height)},
-                   point);
+    const double profile = ends_toward(direction) ? map_density(medium_->map, point) * height_profile(point) : 0.0;
+    const glm::dvec3 height = profile * extinction_of(medium_->height);
+    return changed({.scattering = height * glm::dvec3(medium_->height.albedo), .extinction = height}, point);
 }
 
 glm::dvec3 Fog::closed_optical_depth(const Ray& ray, double length_m) const {
-    const auto homogeneous = static_cast<double>(medium_->homogeneous.extinction_per_m);
-    const auto height = static_cast<double>(medium_->height.extinction_per_m);
+    const auto times = [](const glm::dvec3& extinction, double way_m) { // nothing over an endless way is nothing
+        glm::dvec3 depth(0.0);
+        for (int c = 0; c < 3; ++c) {
+            depth[c] = extinction[c] > 0.0 ? extinction[c] * way_m : 0.0;
+        }
+        return depth;
+    };
     const auto falloff = static_cast<double>(medium_->height.falloff_per_m);
-    double sum = homogeneous > 0.0 ? homogeneous * length_m : 0.0;
-    if (height > 0.0) {
+    glm::dvec3 sum = times(extinction_of(medium_->homogeneous), length_m);
+    const glm::dvec3 height = extinction_of(medium_->height);
+    if (medium_->height.extinction_per_m > 0.0F) {
         const double from_m = ray.origin.y - static_cast<double>(medium_->height.base_height_m);
         if (length_m < infinity) {
-            sum += height * height_integral(falloff, from_m, from_m + ray.direction.y * length_m, length_m);
+            sum += times(height, height_integral(falloff, from_m, from_m + ray.direction.y * length_m, length_m));
         } else if (ends_toward(ray.direction)) {
             const double below_m = std::fmax(0.0, -from_m);
             const double above = std::exp(-falloff * std::fmax(0.0, from_m)) / falloff;
-            sum += height * (below_m + above) / ray.direction.y;
+            sum += times(height, (below_m + above) / ray.direction.y);
         } else {
-            sum = infinity;
+            sum += times(height, infinity);
         }
     }
-    return glm::dvec3(sum);
+    return sum;
 }
 
 glm::dvec3 Fog::closed_optical_depth_of_sky(const Ray& ray) const {

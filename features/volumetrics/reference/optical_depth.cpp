@@ -18,10 +18,18 @@ double smallest(const glm::dvec3& v) {
     return std::min({v.x, v.y, v.z});
 }
 
-/// Where the optical depth without noise first reaches `depth` in every channel; `limit` if it does not before.
-double distance_at_depth(const Fog& fog, const Ray& ray, double depth, double limit) {
+constexpr int every_channel = -1;
+
+/// Where the optical depth without noise first reaches `depth` in a channel, or in every channel that it ever grows in;
+/// `limit` if it does not before.
+double distance_at_depth(const Fog& fog, const Ray& ray, double depth, double limit, int channel = every_channel) {
+    const glm::dvec3 whole = fog.closed_optical_depth(ray, limit);
     const auto reached = [&](double distance_m) {
-        return smallest(fog.closed_optical_depth(ray, distance_m)) >= depth;
+        glm::dvec3 here = fog.closed_optical_depth(ray, distance_m);
+        for (int c = 0; c < 3; ++c) {
+            here[c] = whole[c] > 0.0 ? here[c] : largest(here);
+        }
+        return (channel == every_channel ? smallest(here) : here[channel]) >= depth;
     };
     double far = 1e-9;
     while (far < limit && !reached(far)) {
@@ -125,9 +133,11 @@ EyePath::EyePath(const Fog& fog, const Ray& ray, double length_m, double wanted)
         begin_m = end_m_;
     }
     for (double level = 0.5; level < nothing_left; level *= 2.0) {
-        const double distance_m = distance_at_depth(fog, ray, level, end_m_);
-        if (distance_m < end_m_) {
-            breaks_.push_back(distance_m);
+        for (int channel = 0; channel < 3; ++channel) {
+            const double distance_m = distance_at_depth(fog, ray, level, end_m_, channel);
+            if (distance_m < end_m_ && (breaks_.empty() || distance_m != breaks_.back())) {
+                breaks_.push_back(distance_m);
+            }
         }
     }
     fog.add_breaks(ray, {0.0, end_m_}, breaks_);
