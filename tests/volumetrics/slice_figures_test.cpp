@@ -95,6 +95,83 @@ TEST(SliceFigures, HenyeyGreensteinByTheBookInSinglePrecision) {
     EXPECT_NEAR(integral(0.999F), 0.965, 0.02);
 }
 
+/// Extinction per m of the smooth medium, times `density`, and radiance per optical depth, at t in [0, 1] m.
+double smooth_extinction(double density, double t) {
+    return density * 2.0 * (1.0 + 0.8 * std::sin(7.0 * t));
+}
+double smooth_source(double t) {
+    return 1.0 + 0.5 * std::cos(5.0 * t);
+}
+
+/// Integrals from 0 to x of u^n e^-u, n = 0, 1, 2, by their series.
+std::array<double, 3> exponential_moments(double x) {
+    std::array<double, 3> moments{};
+    for (std::size_t n = 0; n < moments.size(); ++n) {
+        const auto power = static_cast<double>(n + 1);
+        double term = std::pow(x, power);
+        for (int k = 0; k < 60; ++k) {
+            moments[n] += term / (power + k);
+            term *= -x / (k + 1);
+        }
+    }
+    return moments;
+}
+
+/// The radiance of `count` equal slices of the smooth medium, each with a source that is a parabola in optical depth
+/// through its two ends and its middle; optical depth by Simpson's rule, and to the middle by the same parabola.
+double quadratic_in_optical_depth(double density, int count) {
+    double radiance = 0.0;
+    double transmittance = 1.0;
+    const double d = 1.0 / count;
+    for (int i = 0; i < count; ++i) {
+        const std::array t{i * d, (i + 0.5) * d, (i + 1.0) * d};
+        std::array<double, 3> extinction{};
+        std::array<double, 3> source{};
+        for (std::size_t n = 0; n < t.size(); ++n) {
+            extinction[n] = smooth_extinction(density, t[n]);
+            source[n] = smooth_source(t[n]);
+        }
+        const double x = d / 6.0 * (extinction[0] + 4.0 * extinction[1] + extinction[2]);
+        const double middle = d / 24.0 * (5.0 * extinction[0] + 8.0 * extinction[1] - extinction[2]);
+        const double first = (source[1] - source[0]) / middle; // Newton's divided differences
+        const double second = ((source[2] - source[0]) / x - first) / (x - middle);
+        const std::array<double, 3> moments = exponential_moments(x);
+        radiance +=
+            transmittance * (source[0] * moments[0] + (first - second * middle) * moments[1] + second * moments[2]);
+        transmittance *= std::exp(-x);
+    }
+    return radiance;
+}
+
+TEST(SliceFigures, SmoothMediumOver64Slices) {
+    struct Row {
+        double density;
+        double euler;
+        double half_slice;
+        double exponential;
+        double quadratic;
+    };
+    for (const Row& row : {Row{1.0, 2.3e-2, 9.8e-5, 6.4e-6, 1.0e-10}, Row{20.0, 0.39, 2.1e-2, 8.7e-5, 3.5e-7}}) {
+        constexpr int count = 64;
+        std::vector<TwinSlice> slices;
+        for (int i = 0; i < count; ++i) {
+            const double t = (i + 0.5) / count;
+            const double extinction = smooth_extinction(row.density, t);
+            slices.push_back({extinction, extinction * smooth_source(t), 1.0 / count});
+        }
+        const double exact = quadratic_in_optical_depth(row.density, 256 * count);
+        const auto expect = [&](const char* scheme, double found, double figure) {
+            const double error = std::abs(found / exact - 1.0);
+            std::printf("density %2g, %-22s %.2e\n", row.density, scheme, error);
+            EXPECT_NEAR(error, figure, 0.03 * figure) << scheme;
+        };
+        expect("euler", integrate(Integrator::euler, slices).radiance, row.euler);
+        expect("half slice", integrate(Integrator::half_slice, slices).radiance, row.half_slice);
+        expect("exponential", integrate(Integrator::exponential, slices).radiance, row.exponential);
+        expect("quadratic, ends and middle", quadratic_in_optical_depth(row.density, count), row.quadratic);
+    }
+}
+
 /// A roof of slats 0.3 to 1.7 m wide, as far apart, 10 m above; a slanting sun.
 reference::Geometry slats() {
     std::mt19937 random(9);
