@@ -30,7 +30,8 @@ tyndall_install_library(rendergraph rendergraph
                         PRIVATE_HEADERS stages.hpp *_state.hpp *_types.hpp assign.hpp queue_model.hpp search.hpp variants.hpp
                                         verify_order.hpp verify_replay.hpp vulkan_names.hpp)
 tyndall_install_library(volumetrics features/volumetrics
-                        PRIVATE_HEADERS reference *_state.hpp host_buffers.hpp pipelines.hpp shaders.hpp)
+                        PRIVATE_HEADERS reference *_state.hpp density_image.hpp dispatch.hpp host_buffers.hpp persistent_image.hpp
+                                        pipelines.hpp shaders.hpp)
 tyndall_install_library(engine engine PRIVATE_HEADERS *_state.hpp gltf_*.hpp)
 
 # The structs that C++ shares with the shaders.
