@@ -106,6 +106,21 @@ TEST_F(DensityTextures, GridsAreThoseDefined) {
     EXPECT_LE(worst, 2e-2);
 }
 
+TEST_F(DensityTextures, GridsThinnerThanASliceAreThoseDefined) {
+    Scene scene = small_scene();
+    // Within slices 3, 9 and 30, whose ends are whole metres.
+    const auto sheet = [&](float depth_m, float half_m) {
+        return LocalVolume{.center_m = {1000.0F, 20.0F, -300.0F - depth_m},
+                           .half_size_m = {60.0F, 60.0F, half_m},
+                           .extinction_per_m = 1.0F,
+                           .density = random_texels({5, 4, 6})};
+    };
+    scene.inputs.medium.volumes = {sheet(3.6F, 0.3F), sheet(9.4F, 0.3F), sheet(30.7F, 0.2F)};
+    const double worst = largest_difference(scene);
+    std::printf("thin grids: a slice's mean of 1 per metre at most %.1e off\n", worst);
+    EXPECT_LE(worst, 2e-2);
+}
+
 TEST_F(DensityTextures, AreCopiedOnceAndOnlyWhereThereAreSome) {
     Scene scene = small_scene();
     scene.inputs.medium.homogeneous.extinction_per_m = 0.5F;
