@@ -208,6 +208,9 @@ TEST_F(LocalShadow, EachLightLooksIntoItsOwnMap) {
         scene_.lights = {both.lights[i]};
         scene_.inputs.cut = true;
         alone.push_back(render(scene_));
+        const auto [dark, lit] = check(alone[i], render_without());
+        EXPECT_GT(dark, 500U) << i;
+        EXPECT_GT(lit, 1000U) << i;
     }
     std::size_t shared = 0;
     for (std::size_t i = 0; i < sum.in_scattered.size(); ++i) {
