@@ -17,7 +17,7 @@ constexpr double dim_part = 1e-2;
 
 /// Of the optical depth between two points.
 bool has_closed_form(const Medium& medium) {
-    return medium.noise.amplitude == 0.0F && medium.volumes.empty();
+    return medium.noise.amplitude == 0.0F && medium.volumes.empty() && !medium.map.texels;
 }
 
 struct Candidate {
@@ -115,7 +115,7 @@ AirlightChoice choose_airlights(const FrameInputs& frame, const std::optional<Fr
         return {{}, "airlight.max_lights is 0"};
     }
     if (!has_closed_form(frame.medium)) {
-        return {{}, "only froxels know noise and local volumes"};
+        return {{}, "only froxels know noise, a density map and local volumes"};
     }
     if (is_colored(frame.medium)) {
         return {{}, "only froxels know extinction of each channel"};

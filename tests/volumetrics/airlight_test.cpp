@@ -66,7 +66,7 @@ TEST(AirlightChoice, IsOfLightsInAndBesideTheView) {
     EXPECT_EQ(choose_airlights(inputs, std::nullopt).why_not, "airlight.max_lights is 0");
 }
 
-TEST(AirlightChoice, LeavesNoiseVolumesAndColoredExtinctionToTheFroxels) {
+TEST(AirlightChoice, LeavesNoiseMapsVolumesAndColoredExtinctionToTheFroxels) {
     FrameInputs inputs = inputs_with({lamp({0.0, 0.0, -6.0})});
     EXPECT_EQ(chosen(inputs), Places{0});
     inputs.medium.noise.amplitude = 0.1F;
@@ -75,6 +75,11 @@ TEST(AirlightChoice, LeavesNoiseVolumesAndColoredExtinctionToTheFroxels) {
     inputs.medium.volumes.push_back({.extinction_per_m = 0.1F});
     EXPECT_EQ(chosen(inputs), Places{});
     inputs.medium.volumes.clear();
+    inputs.medium.map.texels = *DensityTexels::create({2, 1, 1}, {255, 0});
+    EXPECT_EQ(chosen(inputs), Places{});
+    EXPECT_EQ(choose_airlights(inputs, std::nullopt).why_not,
+              "only froxels know noise, a density map and local volumes");
+    inputs.medium.map.texels.reset();
     inputs.medium.homogeneous.extinction_color = {1.0F, 1.0F, 0.5F};
     EXPECT_EQ(chosen(inputs), Places{});
     EXPECT_EQ(choose_airlights(inputs, std::nullopt).why_not, "only froxels know extinction of each channel");
