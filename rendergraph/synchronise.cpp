@@ -381,8 +381,14 @@ private:
     void record(FoundDependency& made, std::uint32_t cell) {
         Dependency& d = made.dependency;
         if (full_barriers_) {
-            d.src_stages = d.dst_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-            d.local_stages = d.local_stages != 0 ? d.src_stages : 0;
+            // The host's stage is no command: where it takes part, it is named beside them.
+            constexpr VkPipelineStageFlags2 host = VK_PIPELINE_STAGE_2_HOST_BIT;
+            const auto widened = [](VkPipelineStageFlags2 stages) {
+                return VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | (stages & host);
+            };
+            d.local_stages = d.local_stages != 0 ? widened(d.local_stages) : 0;
+            d.src_stages = widened(d.src_stages);
+            d.dst_stages = widened(d.dst_stages);
             d.src_access = d.dst_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
             d.local_access = d.local_stages != 0 ? d.src_access : 0;
         }

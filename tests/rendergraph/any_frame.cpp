@@ -350,8 +350,24 @@ AnyFrame any_frame(std::uint32_t seed) {
     return Maker(seed).run();
 }
 
-tl::expected<Plan, Diagnostics> plan_of(const AnyFrame& frame) {
-    return compile(frame.graph, frame.topology, estimate_memory(frame.graph), {}, frame.costs);
+tl::expected<Plan, Diagnostics> plan_of(const AnyFrame& frame, const CompileOptions& options) {
+    return compile(frame.graph, frame.topology, estimate_memory(frame.graph), options, frame.costs);
+}
+
+std::vector<std::pair<std::string, CompileOptions>> each_switch() {
+    return {{"no culling", {.culling = false}},
+            {"no aliasing", {.aliasing = false}},
+            {"serial", {.async = false}},
+            {"no reordering", {.reordering = false}},
+            {"full barriers", {.full_barriers = true}}};
+}
+
+CompileOptions any_switches(std::uint32_t seed) {
+    return {.culling = (seed & 1U) == 0,
+            .aliasing = (seed & 2U) == 0,
+            .async = (seed & 4U) == 0,
+            .reordering = (seed & 8U) == 0,
+            .full_barriers = (seed & 16U) != 0};
 }
 
 std::uint32_t random_graph_count(std::uint32_t otherwise) {

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "rendergraph/compile.hpp"
 #include "rendergraph/graph.hpp"
@@ -23,7 +26,12 @@ struct AnyFrame {
 [[nodiscard]] AnyFrame any_frame(std::uint32_t seed);
 
 /// As compile makes it, with estimated memory.
-[[nodiscard]] tl::expected<Plan, Diagnostics> plan_of(const AnyFrame& frame);
+[[nodiscard]] tl::expected<Plan, Diagnostics> plan_of(const AnyFrame& frame, const CompileOptions& options = {});
+
+/// Options that switch one thing off each, by the name of what they do.
+[[nodiscard]] std::vector<std::pair<std::string, CompileOptions>> each_switch();
+/// Any of the switches together. 32 seeds in a row give all combinations.
+[[nodiscard]] CompileOptions any_switches(std::uint32_t seed);
 
 /// TYNDALL_RANDOM_GRAPHS, or `otherwise`: how many random frames a test goes through.
 [[nodiscard]] std::uint32_t random_graph_count(std::uint32_t otherwise);

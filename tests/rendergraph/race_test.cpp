@@ -121,9 +121,10 @@ int main(int argc, char** argv) {
         return argc > index ? static_cast<std::uint32_t>(std::strtoul(argv[index], nullptr, 10)) : otherwise;
     };
     bool good = silent_over_true_plans(number(1, 20));
-    for (const Fault fault : {Fault::drop_barrier, Fault::narrow_source_stages, Fault::narrow_destination_stages,
-                              Fault::narrow_source_access, Fault::narrow_destination_access, Fault::drop_wait,
-                              Fault::renumber_wait, Fault::overlap_bytes, Fault::swap_passes, Fault::retarget_queue}) {
+    for (const Fault fault :
+         {Fault::drop_barrier, Fault::narrow_source_stages, Fault::narrow_destination_stages,
+          Fault::narrow_source_access, Fault::narrow_destination_access, Fault::drop_wait, Fault::renumber_wait,
+          Fault::drop_release, Fault::overlap_bytes, Fault::swap_passes, Fault::retarget_queue}) {
         good = speaks_for(fault, number(2, 8)) && good;
     }
     return good ? 0 : 1;

@@ -239,9 +239,9 @@ AnyFrame shrunk(AnyFrame frame, const Shows& shows) {
     return Shrinker(std::move(frame), shows).run();
 }
 
-std::string small_failure(const AnyFrame& frame) {
-    const auto reason = [](const AnyFrame& f) {
-        const auto plan = plan_of(f);
+std::string small_failure(const AnyFrame& frame, const CompileOptions& options) {
+    const auto reason = [&](const AnyFrame& f) {
+        const auto plan = plan_of(f, options);
         if (!plan.has_value()) {
             return "compile refuses it: " + std::to_string(static_cast<int>(plan.error().front().code));
         }

@@ -17,7 +17,7 @@ using Shows = std::function<bool(const AnyFrame&)>;
 
 /// A small frame that compile or the checker refuses for the same first reason as this one, as a file of the corpus.
 /// Put it there once the fault is found.
-[[nodiscard]] std::string small_failure(const AnyFrame& frame);
+[[nodiscard]] std::string small_failure(const AnyFrame& frame, const CompileOptions& options = {});
 
 /// As a file of the corpus.
 [[nodiscard]] std::string as_json(const AnyFrame& frame, const std::string& about);

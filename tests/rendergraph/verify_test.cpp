@@ -37,6 +37,11 @@ TEST(Verify, RandomFramesAreProved) {
         ASSERT_TRUE(plan.has_value()) << "seed " << seed << "\n" << to_text(plan.error()) << small_failure(frame);
         ASSERT_EQ(text(verify(frame.graph, *plan)), "") << "seed " << seed << "\n" << small_failure(frame);
         planned += static_cast<std::uint32_t>(plan->passes.size());
+        const CompileOptions switches = any_switches(seed);
+        const auto switched = plan_of(frame, switches);
+        ASSERT_TRUE(switched.has_value()) << "seed " << seed << "\n" << to_text(switched.error());
+        ASSERT_EQ(text(verify(frame.graph, *switched)), "") << "seed " << seed << ", with switches\n"
+                                                            << small_failure(frame, switches);
     }
     std::printf("seeds 1 to %u: %u passes planned, no violation\n", count, planned);
 }

@@ -161,6 +161,12 @@ TEST_F(Schedule, EachSwitchTurnsOneThingOff) {
     expect_in(alone, "transient memory 197.58 MiB, at least");
     expect_in(schedule({frame, "--switch", "full-barriers"}).output, "all commands (memory read|memory write)");
     EXPECT_NE(schedule({frame, "--switch", "no-reordering"}).output, all);
+    const std::string unread = (folder_ / "unread.json").string();
+    write_text(unread, R"({"resources": [{"name": "sums", "bytes": 64}], "passes": [
+        {"name": "add up", "kind": "compute", "accesses": [{"writes": "sums", "as": "storage_compute"}]}]})");
+    expect_in(schedule({unread}).output, "left out: nothing reads 'sums'");
+    EXPECT_EQ(schedule({unread, "--switch", "no-culling"}).output.find("left out: "), std::string::npos);
+    EXPECT_EQ(schedule({unread, "--switch", "no-culling", "--verify"}).exit_code, 0);
     const ToolRun quick = schedule({frame, "--switch", "no-refinement"});
     EXPECT_NE(quick.output, all);
     EXPECT_EQ(quick.errors.find("searched"), std::string::npos);
