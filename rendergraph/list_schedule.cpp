@@ -102,6 +102,10 @@ ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs
     Scratch<Lane> lanes(work.queue_count);
     Scratch<std::int64_t> starts(count);
     Scratch<std::uint32_t> queue(count);
+    Scratch<Scratch<std::uint32_t>> sequence(work.queue_count); // by queue: its items by start
+    for (Scratch<std::uint32_t>& items : sequence) {
+        items.reserve(count);
+    }
     for (const std::uint32_t item : urgency.items) {
         const std::int64_t duration = work.duration_ns[item];
         const bool free = !is_one_queue(work.allowed[item]);
@@ -128,19 +132,23 @@ ItemSchedule list_schedule(const Work& work, const Urgency& urgency, const Costs
             }
         }
         lanes[best_queue].take(best, duration);
+        // Starts of one queue differ, as no duration is zero; most come in order.
+        auto at = sequence[best_queue].end();
+        while (at != sequence[best_queue].begin() && starts[*std::prev(at)] > best.start) {
+            --at;
+        }
+        sequence[best_queue].insert(at, item);
         unplaced[best_queue] -= free ? 0 : duration;
         starts[item] = best.start;
         queue[item] = best_queue;
     }
-    // Starts of one queue differ, as no duration is zero.
     ItemSchedule schedule;
-    schedule.items.resize(count);
-    std::iota(schedule.items.begin(), schedule.items.end(), 0U);
-    std::sort(schedule.items.begin(), schedule.items.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return starts[a] != starts[b] ? starts[a] < starts[b] : a < b; });
-    schedule.queue.resize(count);
-    std::transform(schedule.items.begin(), schedule.items.end(), schedule.queue.begin(),
-                   [&](std::uint32_t item) { return queue[item]; });
+    schedule.items.reserve(count);
+    schedule.queue.reserve(count);
+    for (std::uint32_t q = 0; q < work.queue_count; ++q) {
+        schedule.items.insert(schedule.items.end(), sequence[q].begin(), sequence[q].end());
+        schedule.queue.insert(schedule.queue.end(), sequence[q].size(), q);
+    }
     return merged(work, schedule);
 }
 

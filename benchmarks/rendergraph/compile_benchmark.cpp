@@ -1,6 +1,4 @@
-// Cost of declaring and compiling the generic frame. One thread, two queues, all stages on. Time a pass is `per_pass`;
-// the fitted growth of the whole is printed as BigO.
-#include <random>
+// Cost of declaring and compiling the generic frame. One thread, two queues, all stages on. Time a pass is `per_pass`.
 #include <string>
 #include <vector>
 
@@ -30,33 +28,18 @@ void compile_with(benchmark::State& state, const Costs& costs) {
         benchmark::DoNotOptimize(plan->passes.data());
     }
     report_per_pass(state);
-    state.SetComplexityN(state.range(0));
 }
 
 void declare_and_compile(benchmark::State& state) {
+    compile_with(state, measured_costs(static_cast<std::size_t>(state.range(0))));
+}
+BENCHMARK(declare_and_compile)->RangeMultiplier(4)->Range(16, 16384)->Unit(benchmark::kMicrosecond);
+
+/// A first frame: nothing is decided by durations.
+void declare_and_compile_unmeasured(benchmark::State& state) {
     compile_with(state, {});
 }
-BENCHMARK(declare_and_compile)
-    ->RangeMultiplier(4)
-    ->Range(16, 16384)
-    ->Unit(benchmark::kMicrosecond)
-    ->Complexity(benchmark::oAuto);
-
-/// Between 20 and 220 us a pass, as a device would measure them, so that the list schedule is made and overlaps.
-void declare_and_compile_measured(benchmark::State& state) {
-    std::minstd_rand random(1);
-    Costs costs;
-    for (std::int64_t i = 0; i <= state.range(0); ++i) {
-        costs.of_pass.push_back(
-            {.mean_ns = 20'000 + static_cast<std::int64_t>(random() % 200'000), .deviation_ns = 1'000});
-    }
-    compile_with(state, costs);
-}
-BENCHMARK(declare_and_compile_measured)
-    ->RangeMultiplier(4)
-    ->Range(16, 16384)
-    ->Unit(benchmark::kMicrosecond)
-    ->Complexity(benchmark::oAuto);
+BENCHMARK(declare_and_compile_unmeasured)->RangeMultiplier(4)->Range(16, 16384)->Unit(benchmark::kMicrosecond);
 
 void declare(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));

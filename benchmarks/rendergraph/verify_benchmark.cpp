@@ -11,7 +11,7 @@ using namespace tyndall::rg::bench;
 void verify_plan(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
     const DeclaredGraph declared = generic_frame(names("pass ", count), names("image ", count));
-    const auto plan = compile(declared.desc, two_queues, estimate_memory(declared.desc));
+    const auto plan = compile(declared.desc, two_queues, estimate_memory(declared.desc), {}, measured_costs(count));
     if (!plan) {
         state.SkipWithError("the frame does not compile");
         return;
