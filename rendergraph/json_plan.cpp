@@ -1,5 +1,6 @@
 // A plan as JSON, both ways.
-// Invariant: a plan that was read has no index outside its table.
+// Invariant: a plan that was read has no index outside its table, none missing that its reasons speak of, and no number
+// that overflows in a sum.
 #include <algorithm>
 #include <array>
 #include <type_traits>
@@ -15,11 +16,9 @@ using json::fields;
 using json::Json;
 using json::Table;
 
-/// The value that stands for "no index", "the rest" or "no family": null in the file.
+/// The value that stands for "no index", "the rest", "all types" or "no family": null in the file.
 template <typename T>
-constexpr bool means_nothing(T value) {
-    return std::is_unsigned_v<T> && sizeof(T) >= sizeof(std::uint32_t) && value == std::numeric_limits<T>::max();
-}
+constexpr T nothing = std::numeric_limits<T>::max();
 
 // ---- writing -----------------------------------------------------------------------------------------------------
 
@@ -28,18 +27,19 @@ public:
     explicit Writer(Json& out) : out_(out) {}
 
     template <typename T>
-    void value(const char* key, T& v) {
-        out_[key] = scalar(v);
+    void value(const char* key, T& v, T = nothing<T>) {
+        out_[key] = v;
     }
     template <typename T>
-    void values(const char* key, std::vector<T>& list) {
-        Json& array = out_[key] = Json::array();
-        for (const T& v : list) {
-            array.push_back(scalar(v));
-        }
+    void value_or_all(const char* key, T& v) {
+        out_[key] = v == nothing<T> ? Json(nullptr) : Json(v);
     }
-    void index(const char* key, std::uint32_t& v, Table) { value(key, v); }
-    void index_or_none(const char* key, std::uint32_t& v, Table) { value(key, v); }
+    template <typename T>
+    void values(const char* key, std::vector<T>& list, T = nothing<T>) {
+        out_[key] = list;
+    }
+    void index(const char* key, std::uint32_t& v, Table) { value_or_all(key, v); }
+    void index_or_none(const char* key, std::uint32_t& v, Table, bool = false) { value_or_all(key, v); }
     void indices(const char* key, std::vector<std::uint32_t>& list, Table) { values(key, list); }
     void run(const char* first_key, const char* count_key, std::uint32_t& first, std::uint32_t& count, Table) {
         value(first_key, first);
@@ -74,10 +74,6 @@ public:
     }
 
 private:
-    template <typename T>
-    static Json scalar(const T& v) {
-        return means_nothing(v) ? Json(nullptr) : Json(v);
-    }
     Json& out_;
 };
 
@@ -92,22 +88,35 @@ public:
         }
     }
 
+    /// A number from 0, or where it may be negative from -most, to most.
     template <typename T>
-    void value(const char* key, T& v) {
-        if (const Json* at = find(key); at != nullptr && !scalar(*at, v)) {
-            wrong(key, "another kind of value");
+    void value(const char* key, T& v, T most = nothing<T>) {
+        if (const Json* at = find(key)) {
+            scalar(key, *at, v, most);
+        }
+    }
+    void value(const char* key, bool& v) {
+        const Json* at = find(key);
+        v = at != nullptr && at->is_boolean() && at->get<bool>();
+        if (at != nullptr && !at->is_boolean()) {
+            wrong(key, "true or false");
         }
     }
     template <typename T>
-    void values(const char* key, std::vector<T>& list) {
-        for_each(key, [&](const Json& entry, const std::string&) {
-            if (!scalar(entry, list.emplace_back())) {
-                wrong(key, "another kind of value");
-            }
-        });
+    void value_or_all(const char* key, T& v) {
+        const Json* at = find(key);
+        if (at != nullptr && at->is_null()) {
+            v = nothing<T>;
+        } else if (at != nullptr) {
+            scalar(key, *at, v, nothing<T>);
+        }
+    }
+    template <typename T>
+    void values(const char* key, std::vector<T>& list, T most = nothing<T>) {
+        for_each(key, [&](const Json& entry, const std::string&) { scalar(key, entry, list.emplace_back(), most); });
     }
     void index(const char* key, std::uint32_t& v, Table) { value(key, v); }
-    void index_or_none(const char* key, std::uint32_t& v, Table) { value(key, v); }
+    void index_or_none(const char* key, std::uint32_t& v, Table, bool = false) { value_or_all(key, v); }
     void indices(const char* key, std::vector<std::uint32_t>& list, Table) { values(key, list); }
     void run(const char* first_key, const char* count_key, std::uint32_t& first, std::uint32_t& count, Table) {
         value(first_key, first);
@@ -131,7 +140,7 @@ public:
     void mask(const char* key, T& v, VulkanNames names) {
         std::uint64_t bits = 0;
         for_each(key, [&](const Json& entry, const std::string&) {
-            if (const auto bit = number_or_name(entry, names)) {
+            if (const auto bit = number_or_name(entry, names, nothing<T>)) {
                 bits |= *bit;
             } else {
                 wrong(key, "names");
@@ -142,7 +151,8 @@ public:
     template <typename E>
     void name(const char* key, E& v, VulkanNames names) {
         const Json* at = find(key);
-        const auto found = at == nullptr ? std::nullopt : number_or_name(*at, names);
+        constexpr std::uint64_t most = 0x7fffffff; // VK_*_MAX_ENUM
+        const auto found = at == nullptr ? std::nullopt : number_or_name(*at, names, most);
         if (found) {
             v = static_cast<E>(*found);
         } else if (at != nullptr) {
@@ -188,28 +198,22 @@ private:
             }
         }
     }
-    static std::optional<std::uint64_t> number_or_name(const Json& entry, VulkanNames names) {
-        return entry.is_number_unsigned() ? entry.get<std::uint64_t>()
-               : entry.is_string()        ? value_in(names, entry.get_ref<const std::string&>())
-                                          : std::nullopt;
-    }
-    static bool scalar(const Json& entry, bool& v) {
-        v = entry.is_boolean() && entry.get<bool>();
-        return entry.is_boolean();
+    static std::optional<std::uint64_t> number_or_name(const Json& entry, VulkanNames names, std::uint64_t most) {
+        if (entry.is_number_unsigned() && entry.get<std::uint64_t>() <= most) {
+            return entry.get<std::uint64_t>();
+        }
+        return entry.is_string() ? value_in(names, entry.get_ref<const std::string&>()) : std::nullopt;
     }
     template <typename T>
-    static bool scalar(const Json& entry, T& v) {
-        if (entry.is_null() && means_nothing(std::numeric_limits<T>::max())) {
-            v = std::numeric_limits<T>::max();
-            return true;
+    void scalar(const char* key, const Json& entry, T& v, T most) {
+        bool fits = entry.is_number_unsigned() && entry.get<std::uint64_t>() <= static_cast<std::uint64_t>(most);
+        if constexpr (std::is_signed_v<T>) {
+            fits = fits || (entry.is_number_integer() && !entry.is_number_unsigned() && entry.get<T>() >= -most);
         }
-        const bool fits = std::is_signed_v<T>
-                              ? entry.is_number_integer()
-                              : entry.is_number_unsigned() &&
-                                    entry.get<std::uint64_t>() <= std::uint64_t{std::numeric_limits<T>::max()};
-        v = fits ? static_cast<T>(entry.get<std::conditional_t<std::is_signed_v<T>, std::int64_t, std::uint64_t>>())
-                 : T{};
-        return fits;
+        v = fits ? entry.get<T>() : T{};
+        if (!fits) {
+            wrong(key, "a whole number up to " + std::to_string(most));
+        }
     }
     void wrong(const char* key, const std::string& needed) {
         json::complain(mistakes_, {"The plan"}, "needs " + needed + " as '" + path_ + key + "'");
@@ -228,16 +232,18 @@ public:
         : sizes_(sizes), path_(std::move(path)), mistakes_(mistakes) {}
 
     template <typename T>
-    void value(const char*, T&) {}
+    void value(const char*, T&, T = nothing<T>) {}
     template <typename T>
-    void values(const char*, std::vector<T>&) {}
+    void value_or_all(const char*, T&) {}
+    template <typename T>
+    void values(const char*, std::vector<T>&, T = nothing<T>) {}
     void index(const char* key, std::uint32_t& v, Table table) {
         if (v >= size(table)) {
             outside(key);
         }
     }
-    void index_or_none(const char* key, std::uint32_t& v, Table table) {
-        if (v != none) {
+    void index_or_none(const char* key, std::uint32_t& v, Table table, bool needed = false) {
+        if (v != none || needed) {
             index(key, v, table);
         }
     }
@@ -290,6 +296,41 @@ Json names_json(const std::vector<T>& named) {
     return list;
 }
 
+/// What walks through a plan relies on, once its indices are sound: batches that hold all passes, one after the other,
+/// and forms that exist.
+void check_structure(const GraphDesc& graph, const Plan& plan, Diagnostics& mistakes) {
+    const auto complain = [&](const std::string& what) { json::complain(mistakes, {"The plan"}, what); };
+    std::size_t next = 0;
+    for (std::uint32_t b = 0; b < plan.batches.size(); ++b) {
+        const Batch& batch = plan.batches[b];
+        bool follows = batch.first_pass == next && batch.pass_count > 0;
+        next += batch.pass_count;
+        for (std::size_t i = batch.first_pass; follows && i < next; ++i) {
+            follows = plan.passes[i].batch == b && plan.passes[i].queue == batch.queue;
+        }
+        if (!follows) {
+            complain("needs passes of its queue, behind those of the batch before, in 'batches[" + std::to_string(b) +
+                     "]'");
+            return;
+        }
+    }
+    if (next != plan.passes.size()) {
+        complain("needs 'batches' that hold all passes");
+    }
+    if (plan.variants.size() != graph.variants.size()) {
+        complain("needs one of 'variants' for each variant");
+        return;
+    }
+    for (std::size_t i = 0; i < plan.variants.size(); ++i) {
+        const std::size_t forms = graph.variants[i].forms.size();
+        const std::size_t predicted = plan.variants[i].predicted_ns.size();
+        if (plan.variants[i].form >= forms || (predicted != 0 && predicted != forms)) {
+            complain("needs a form of " + json::in_quotes(graph.variants[i].name) +
+                     " and a prediction for each in 'variants[" + std::to_string(i) + "]'");
+        }
+    }
+}
+
 } // namespace
 
 std::string plan_to_json(const GraphDesc& graph, const Plan& plan) {
@@ -328,8 +369,8 @@ tl::expected<Plan, Diagnostics> plan_from_json(std::string_view text, const Grap
     if (plan.placements.size() != graph.resources.size()) {
         json::complain(mistakes, {"The plan"}, "needs one of 'placements' for each resource");
     }
-    if (plan.variants.size() != graph.variants.size()) {
-        json::complain(mistakes, {"The plan"}, "needs one of 'variants' for each variant");
+    if (mistakes.empty()) {
+        check_structure(graph, plan, mistakes);
     }
     if (!mistakes.empty()) {
         return tl::unexpected(std::move(mistakes));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "rendergraph/limits.hpp"
 #include "rendergraph/plan.hpp"
 #include "rendergraph/vulkan_names.hpp"
 
@@ -78,15 +79,15 @@ void fields(V& v, QueueInfo& q) {
 template <typename V>
 void fields(V& v, ImageRange& r) {
     v.value("base_mip", r.base_mip);
-    v.value("mip_count", r.mip_count);
+    v.value_or_all("mip_count", r.mip_count);
     v.value("base_layer", r.base_layer);
-    v.value("layer_count", r.layer_count);
+    v.value_or_all("layer_count", r.layer_count);
     v.mask("aspects", r.aspects, aspect_names());
 }
 template <typename V>
 void fields(V& v, BufferRange& r) {
     v.value("offset", r.offset);
-    v.value("size", r.size);
+    v.value_or_all("size", r.size);
 }
 template <typename V>
 void fields(V& v, Dependency& d) {
@@ -108,8 +109,8 @@ void fields(V& v, Dependency& d) {
     v.name("new_layout", d.new_layout, layout_names());
     v.index("src_queue", d.src_queue, Table::queues);
     v.index("dst_queue", d.dst_queue, Table::queues);
-    v.value("src_family", d.src_family);
-    v.value("dst_family", d.dst_family);
+    v.value_or_all("src_family", d.src_family);
+    v.value_or_all("dst_family", d.dst_family);
     v.index_or_none("alias_of", d.alias_of, Table::resources);
     v.index_or_none("orders_for", d.orders_for, Table::resources);
 }
@@ -127,7 +128,8 @@ void fields(V& v, PlannedPass& p) {
     v.value("slot", p.slot);
     v.word("keep_reason", p.keep_reason, keep_words);
     v.index_or_none("keep_for", p.keep_for,
-                    p.keep_reason == KeepReason::feeds_kept_pass ? Table::passes : Table::resources);
+                    p.keep_reason == KeepReason::feeds_kept_pass ? Table::passes : Table::resources,
+                    p.keep_reason == KeepReason::writes_import || p.keep_reason == KeepReason::writes_history);
     v.word("queue_reason", p.queue_reason, queue_reason_words);
     v.run("first_barrier", "barrier_count", p.first_barrier, p.barrier_count, Table::dependencies);
     v.run("first_attachment", "attachment_count", p.first_attachment, p.attachment_count, Table::attachments);
@@ -139,7 +141,8 @@ void fields(V& v, CulledPass& c) {
     v.index_or_none("because_of", c.because_of,
                     c.reason == CullReason::consumer_culled ? Table::passes
                     : c.reason == CullReason::other_form    ? Table::variants
-                                                            : Table::resources);
+                                                            : Table::resources,
+                    c.reason == CullReason::consumer_culled || c.reason == CullReason::other_form);
 }
 template <typename V>
 void fields(V& v, CulledResource& c) {
@@ -165,9 +168,9 @@ void fields(V& v, Batch& b) {
 template <typename V>
 void fields(V& v, Placement& p) {
     v.word("kind", p.kind, placement_words);
-    v.index_or_none("heap", p.heap, Table::heaps);
-    v.value("offset_bytes", p.offset_bytes);
-    v.value("size_bytes", p.size_bytes);
+    v.index_or_none("heap", p.heap, Table::heaps, p.kind == PlacementKind::heap);
+    v.value("offset_bytes", p.offset_bytes, most_bytes);
+    v.value("size_bytes", p.size_bytes, most_bytes);
     v.mask("image_usage", p.image_usage, image_usage_names());
     v.mask("buffer_usage", p.buffer_usage, buffer_usage_names());
     v.value("concurrent", p.concurrent);
@@ -179,31 +182,31 @@ void fields(V& v, Placement& p) {
 }
 template <typename V>
 void fields(V& v, Heap& h) {
-    v.value("memory_type_bits", h.memory_type_bits);
-    v.value("size_bytes", h.size_bytes);
+    v.value_or_all("memory_type_bits", h.memory_type_bits);
+    v.value("size_bytes", h.size_bytes, most_bytes);
 }
 template <typename V>
 void fields(V& v, AsyncDecision& d) {
     v.value("overlaps", d.overlaps);
     v.word("reason", d.reason, decision_words);
-    v.value("serial_ns", d.serial_ns);
-    v.value("overlap_ns", d.overlap_ns);
-    v.value("lower_bound_ns", d.lower_bound_ns);
-    v.value("ceiling_ns", d.ceiling_ns);
-    v.value("threshold_ns", d.threshold_ns);
+    v.value("serial_ns", d.serial_ns, most_ns);
+    v.value("overlap_ns", d.overlap_ns, most_ns);
+    v.value("lower_bound_ns", d.lower_bound_ns, most_ns);
+    v.value("ceiling_ns", d.ceiling_ns, most_ns);
+    v.value("threshold_ns", d.threshold_ns, most_ns);
     v.value("kept_by_hysteresis", d.kept_by_hysteresis);
 }
 template <typename V>
 void fields(V& v, VariantDecision& d) {
     v.value("form", d.form);
     v.word("reason", d.reason, variant_words);
-    v.values("predicted_ns", d.predicted_ns);
+    v.values("predicted_ns", d.predicted_ns, most_ns);
 }
 template <typename V>
 void fields(V& v, PlanStatistics& s) {
-    v.value("transient_bytes", s.transient_bytes);
-    v.value("transient_bytes_unaliased", s.transient_bytes_unaliased);
-    v.value("transient_bound_bytes", s.transient_bound_bytes);
+    v.value("transient_bytes", s.transient_bytes, most_bytes);
+    v.value("transient_bytes_unaliased", s.transient_bytes_unaliased, most_bytes);
+    v.value("transient_bound_bytes", s.transient_bound_bytes, most_bytes);
     v.value("barrier_count", s.barrier_count);
     v.value("wait_count", s.wait_count);
 }

@@ -16,6 +16,11 @@ bool inside(const ResourceDesc& resource, const Region& region) {
            region.end_b <= end_b;
 }
 
+template <typename T>
+bool is_run_of(const std::vector<T>& table, std::uint32_t first, std::uint32_t count) {
+    return first <= table.size() && count <= table.size() - first;
+}
+
 std::string pass_mistake(const GraphDesc& graph, const Plan& plan) {
     if (plan.variants.size() != graph.variants.size()) {
         return "the plan does not say which form of each variant it has";
@@ -23,8 +28,8 @@ std::string pass_mistake(const GraphDesc& graph, const Plan& plan) {
     std::vector<std::uint32_t> seen(graph.passes.size(), 0);
     for (const PlannedPass& planned : plan.passes) {
         if (planned.pass >= graph.passes.size() || planned.queue >= plan.topology.queues.size() ||
-            planned.first_barrier + planned.barrier_count > plan.dependencies.size() ||
-            planned.first_attachment + planned.attachment_count > plan.attachments.size()) {
+            !is_run_of(plan.dependencies, planned.first_barrier, planned.barrier_count) ||
+            !is_run_of(plan.attachments, planned.first_attachment, planned.attachment_count)) {
             return "a planned pass points outside the graph, the queues, the dependencies or the attachments";
         }
         if (!of_kept_form(graph, plan, planned.pass)) {
@@ -50,7 +55,7 @@ std::string pass_mistake(const GraphDesc& graph, const Plan& plan) {
 std::string batch_mistake(const Plan& plan) {
     std::uint32_t next = 0;
     for (const Batch& b : plan.batches) {
-        if (b.first_pass != next || b.first_pass + b.pass_count > plan.passes.size() ||
+        if (b.first_pass != next || !is_run_of(plan.passes, b.first_pass, b.pass_count) ||
             b.queue >= plan.topology.queues.size()) {
             return "the batches do not follow the passes";
         }
@@ -73,7 +78,7 @@ std::string batch_mistake(const Plan& plan) {
 /// What is wrong with the plan's indices; empty when they can be trusted.
 std::string index_mistake(const GraphDesc& graph, const Plan& plan) {
     if (plan.placements.size() != graph.resources.size() ||
-        plan.first_exit_barrier + plan.exit_barrier_count > plan.dependencies.size()) {
+        !is_run_of(plan.dependencies, plan.first_exit_barrier, plan.exit_barrier_count)) {
         return "the placements do not hold all resources, or the exits are no dependencies";
     }
     for (const Dependency& d : plan.dependencies) {
@@ -85,6 +90,11 @@ std::string index_mistake(const GraphDesc& graph, const Plan& plan) {
         const ResourceDesc& resource = graph.resources[d.resource];
         if (!inside(resource, region_of(resource, d.image_range, d.buffer_range))) {
             return "a dependency covers parts that its resource does not have";
+        }
+    }
+    for (const Placement& placement : plan.placements) {
+        if (placement.kind == PlacementKind::heap && placement.size_bytes == 0) {
+            return "a placement has no bytes";
         }
     }
     if (std::any_of(plan.attachments.begin(), plan.attachments.end(),
@@ -110,8 +120,9 @@ std::vector<Violation> check_form(const GraphDesc& graph, const Plan& plan) {
     }
     for (std::uint32_t r = 0; r < plan.placements.size(); ++r) {
         const Placement& p = plan.placements[r];
+        const VkDeviceSize heap_bytes = p.heap < plan.heaps.size() ? plan.heaps[p.heap].size_bytes : 0;
         if (p.kind == PlacementKind::heap &&
-            (p.heap >= plan.heaps.size() || p.offset_bytes + p.size_bytes > plan.heaps[p.heap].size_bytes)) {
+            (p.offset_bytes > heap_bytes || p.size_bytes > heap_bytes - p.offset_bytes)) {
             found.push_back({.code = ViolationCode::memory_overlap,
                              .resource = r,
                              .message = "'" + graph.resources[r].name + "' lies outside its heap"});

@@ -2,11 +2,16 @@
 #include "rendergraph/json.hpp"
 
 #include <fstream>
+#include <limits>
 #include <random>
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "rendergraph/explain.hpp"
+#include "rendergraph/optimality.hpp"
+#include "rendergraph/report.hpp"
 #include "rendergraph/verify.hpp"
 #include "tests/rendergraph/any_frame.hpp"
 #include "tests/rendergraph/frames.hpp"
@@ -168,6 +173,127 @@ TEST(PlanJson, AnIndexOutsideItsTableIsRefused) {
                                      "file: The plan needs one of 'placements' for each resource\n");
 }
 
+/// The text of a plan of the fog frame with one value changed.
+std::string changed_plan(const GraphDesc& graph, const std::string& at, const nlohmann::json& value) {
+    nlohmann::json plan = nlohmann::json::parse(plan_to_json(graph, compiled(graph, two_queues())));
+    plan.at(nlohmann::json::json_pointer(at)) = value;
+    return plan.dump();
+}
+
+TEST(PlanJson, WhatAPlanCannotSayIsRefused) {
+    GraphBuilder builder;
+    const std::uint32_t variant = builder.add_variant("way");
+    Buffer out = builder.import_buffer("out", {.size_bytes = 64}, {.has_final = true});
+    Buffer way[2] = {builder.create_buffer("way", {.size_bytes = 64})};
+    way[1] = way[0];
+    for (std::size_t i = 0; i < 2; ++i) {
+        builder.begin_form(variant, i == 0 ? "a" : "b");
+        builder.add_pass(i == 0 ? "first" : "second", PassKind::compute).writes(way[i], Access::storage_compute);
+    }
+    builder.end_form();
+    builder.add_pass("use", PassKind::compute)
+        .reads(either(way[0], way[1]), Access::storage_compute)
+        .writes(out, Access::storage_compute);
+    const GraphDesc graph = builder.finish().desc;
+    const auto answer = [&](const std::string& at, const nlohmann::json& value) {
+        const auto plan = plan_from_json(changed_plan(graph, at, value), graph);
+        return plan ? "" : all_of(plan.error());
+    };
+    const nlohmann::json null = nullptr;
+    const auto outside = [](const std::string& what) {
+        return "file: The plan has an index outside its table as '" + what + "'\n";
+    };
+    const auto needs = [](const std::string& what, const std::string& where) {
+        return "file: The plan needs " + what + " as '" + where + "'\n";
+    };
+    EXPECT_EQ(answer("/passes/0/slot", 0), "");
+    EXPECT_EQ(answer("/passes/0/keep_for", null), ""); // culling may be switched off
+    EXPECT_EQ(answer("/passes/1/keep_for", null), outside("passes[1].keep_for"));
+    EXPECT_EQ(answer("/culled_passes/0/because_of", null), outside("culled_passes[0].because_of"));
+    EXPECT_EQ(answer("/placements/1/heap", null), outside("placements[1].heap"));
+    EXPECT_EQ(answer("/placements/1/size_bytes", null),
+              needs("a whole number up to 1125899906842624", "placements[1].size_bytes"));
+    EXPECT_EQ(answer("/placements/1/offset_bytes", ~std::uint64_t{0}),
+              needs("a whole number up to 1125899906842624", "placements[1].offset_bytes"));
+    EXPECT_EQ(answer("/decision/serial_ns", std::numeric_limits<std::int64_t>::min()),
+              needs("a whole number up to 1152921504606846976", "decision.serial_ns"));
+    EXPECT_EQ(answer("/dependencies/0/new_layout", 0x80000000U), needs("a name", "dependencies[0].new_layout"));
+    EXPECT_EQ(answer("/placements/1/buffer_usage", {std::uint64_t{1} << 40U}),
+              needs("names", "placements[1].buffer_usage"));
+    EXPECT_EQ(answer("/batches/0/signals", 1), needs("true or false", "batches[0].signals"));
+    const std::string forms = "file: The plan needs a form of 'way' and a prediction for each in 'variants[0]'\n";
+    EXPECT_EQ(answer("/variants/0/form", 77), forms);
+    EXPECT_EQ(answer("/variants/0/predicted_ns", {1, 2, 3}), forms);
+    const std::string batches =
+        "file: The plan needs passes of its queue, behind those of the batch before, in 'batches[0]'\n";
+    EXPECT_EQ(answer("/batches/0/pass_count", 0), batches);
+    EXPECT_EQ(answer("/batches/0/queue", 1), batches);
+    EXPECT_EQ(answer("/batches", nlohmann::json::array()), outside("passes[0].batch") + outside("passes[1].batch"));
+}
+
+/// All values that hold no others.
+std::vector<nlohmann::json*> leaves(nlohmann::json& document) {
+    std::vector<nlohmann::json*> out = {&document};
+    for (std::size_t i = 0; i < out.size();) {
+        if (nlohmann::json& at = *out[i]; at.is_structured() && !at.empty()) {
+            out.erase(out.begin() + static_cast<std::ptrdiff_t>(i));
+            for (nlohmann::json& inner : at) {
+                out.push_back(&inner);
+            }
+        } else {
+            ++i;
+        }
+    }
+    return out;
+}
+
+/// Damage of the text, and of single values, which more often gives a plan that is read.
+TEST(PlanJson, NoRandomDamageCrashes) {
+    std::mt19937 bits(11);
+    std::uint32_t read = 0;
+    std::uint32_t refused = 0;
+    for (std::uint32_t i = 0; i < 1'500; ++i) {
+        const AnyFrame made = any_frame(1 + i % 100);
+        std::string text = plan_to_json(made.graph, *plan_of(made));
+        if (i % 8 == 0) {
+            text[bits() % text.size()] = static_cast<char>("0{}[]\",:x9"[bits() % 10]);
+        } else {
+            nlohmann::json document = nlohmann::json::parse(text);
+            const std::vector<nlohmann::json*> all = leaves(document);
+            for (std::uint32_t k = 0; k < 1 + i % 2; ++k) {
+                const nlohmann::json values[] = {nullptr,
+                                                 0,
+                                                 1,
+                                                 bits() % 8,
+                                                 0xffffffffU,
+                                                 std::numeric_limits<std::int64_t>::min(),
+                                                 std::numeric_limits<std::uint64_t>::max(),
+                                                 std::uint64_t{1} << (bits() % 64),
+                                                 "history",
+                                                 true};
+                *all[bits() % all.size()] = values[bits() % std::size(values)];
+            }
+            text = document.dump();
+        }
+        const auto plan = plan_from_json(text, made.graph);
+        if (!plan) {
+            EXPECT_FALSE(plan.error().empty());
+            ++refused;
+            continue;
+        }
+        ++read;
+        const Timeline timeline = simulate(made.graph, *plan, made.costs);
+        EXPECT_FALSE(explain_table(made.graph, *plan).empty());
+        EXPECT_FALSE(to_text(optimality(made.graph, *plan, timeline)).empty());
+        EXPECT_FALSE(to_dot(made.graph, *plan).empty());
+        EXPECT_FALSE(to_html("", "", made.graph, *plan, made.costs).empty());
+        EXPECT_FALSE(to_trace(made.graph, *plan, timeline).empty());
+        (void)verify(made.graph, *plan);
+    }
+    EXPECT_GT(read, 200U);
+    EXPECT_GT(refused, 500U);
+}
+
 // ---- mistakes ----------------------------------------------------------------------------------------------------
 
 std::string mistakes_of(std::string_view text) {
@@ -233,7 +359,10 @@ TEST(FrameJsonMistakes, NoRandomDamageCrashes) {
             text[bits() % text.size()] = static_cast<char>("0{}[]\",:x9"[bits() % 10]);
         }
         if (const auto frame = frame_from_json(text)) {
-            (void)compile(frame->graph, frame->topology, estimate_memory(frame->graph), {}, frame->costs);
+            const auto plan = compile(frame->graph, frame->topology, estimate_memory(frame->graph), {}, frame->costs);
+            if (plan) {
+                EXPECT_TRUE(verify(frame->graph, *plan).empty()) << text;
+            }
         } else {
             EXPECT_FALSE(frame.error().empty());
             ++refused;

@@ -163,6 +163,12 @@ TEST(VerifyForm, TellsWhatIsMalformed) {
     EXPECT_TRUE(malformed([](Plan& p) { p.dependencies[0].image_range.base_mip = 99; }));
     EXPECT_TRUE(malformed([](Plan& p) { p.dependencies[0].consumer = 1000; }));
     EXPECT_TRUE(malformed([](Plan& p) { p.attachments[0].access = none; }));
+    EXPECT_TRUE(malformed([](Plan& p) { p.placements[1].size_bytes = 0; }));
+    EXPECT_TRUE(malformed([](Plan& p) { p.passes[0].first_barrier = none; }));
+    EXPECT_TRUE(malformed([](Plan& p) { p.exit_barrier_count = none; }));
+    Plan around = plan; // the sum of offset and size is small again
+    around.placements[1].offset_bytes = ~VkDeviceSize{0};
+    EXPECT_TRUE(has(verify(declared.desc, around), ViolationCode::memory_overlap));
     Plan outside = plan;
     for (Placement& placement : outside.placements) {
         placement.offset_bytes += placement.kind == PlacementKind::heap ? VkDeviceSize{1} << 40U : 0;
