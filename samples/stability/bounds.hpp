@@ -40,8 +40,9 @@ struct BoundsReport {
 [[nodiscard]] std::string to_text(const BoundsReport& report, double tolerance);
 
 /// The largest error of a pixel's channel in parts of its exact value, which counts as at least `floor` times the
-/// picture's mean. Where the exact picture is black, 0 if the other is too, else infinite.
+/// picture's mean, and the mean as at least `least_mean`. Where the exact picture and that are black, 0 if the other is
+/// too, else infinite.
 [[nodiscard]] double worst_relative_error(std::span<const glm::dvec3> found, std::span<const glm::dvec3> exact,
-                                          double floor = 1e-3);
+                                          double floor = 1e-3, double least_mean = 0.0);
 
 } // namespace tyndall::samples

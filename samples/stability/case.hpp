@@ -24,8 +24,9 @@ struct StabilityCase {
     /// Of the worst pixel's relative error; absent where froxels of this grid cannot hold the picture, and only what
     /// holds of every frame is asked.
     std::optional<double> bound;
-    double floor = 1e-3; ///< of the exact value in that error, in parts of the picture's mean
-    bool quick = false;  ///< among the few that --quick shows
+    double floor = 1e-3;     ///< of the exact value in that error, in parts of the picture's mean
+    double least_mean = 0.0; ///< that the picture's mean counts as: radiance in parts of which darkness is dark
+    bool quick = false;      ///< among the few that --quick shows
 };
 
 /// All single pictures.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -298,34 +297,6 @@ std::vector<StabilityCase> stability_cases() {
     add_furnaces(cases);
     add_dense_slabs(cases);
     return cases;
-}
-
-std::vector<Refusal> stability_refusals() {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    std::vector<Refusal> all;
-    const auto add = [&](const char* parameter, auto&& change) {
-        Refusal refusal{parameter, {}};
-        change(refusal.fog);
-        all.push_back(std::move(refusal));
-    };
-    using volumetrics::Fog;
-    add("medium.homogeneous.extinction_per_m", [&](Fog& f) { f.medium.homogeneous.extinction_per_m = nan; });
-    add("medium.homogeneous.extinction_per_m", [](Fog& f) { f.medium.homogeneous.extinction_per_m = -1.0F; });
-    add("medium.homogeneous.extinction_per_m", [](Fog& f) { f.medium.homogeneous.extinction_per_m = 2e6F; });
-    add("medium.homogeneous.albedo", [](Fog& f) { f.medium.homogeneous.albedo.g = 1.5F; });
-    add("medium.height.falloff_per_m", [](Fog& f) { f.medium.height.falloff_per_m = -0.1F; });
-    add("medium.noise.amplitude", [](Fog& f) { f.medium.noise.amplitude = 2.0F; });
-    add("medium.volumes[0].half_size_m",
-        [](Fog& f) { f.medium.volumes = {volumetrics::LocalVolume{.half_size_m = glm::vec3(-1.0F)}}; });
-    add("phase.g", [](Fog& f) { f.medium.phase_g = 1.0F; });
-    add("ambient.radiance", [](Fog& f) { f.medium.ambient_radiance.b = 1e10F; });
-    add("grid.slices", [](Fog& f) { f.settings.grid.slices = 4; });
-    add("grid.range_m", [](Fog& f) { f.settings.grid.range_m = 1e8F; });
-    add("grid.shape_m", [](Fog& f) { f.settings.grid.shape_m = 1e-3F; });
-    add("shadow.esm_exponent", [](Fog& f) { f.settings.shadow.esm_exponent[2] = 2000.0F; });
-    add("temporal.new_frame_weight", [](Fog& f) { f.settings.temporal.new_frame_weight = 0.0F; });
-    add("visibility.taps", [](Fog& f) { f.settings.visibility.taps = 0; });
-    return all;
 }
 
 } // namespace tyndall::samples

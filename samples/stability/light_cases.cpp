@@ -10,6 +10,8 @@ namespace tyndall::samples {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
+/// Five times what is seen with the light at the eye itself, 2e-5; elsewhere it is 2e-6.
+constexpr double pixels_smooth = 1e-4;
 
 /// In air so thin that light loses less than a part in a thousand on its way of `reach_m`.
 StabilityCase lit_air(std::string name, std::string parameter, const reference::Light& light, double reach_m = 100.0) {
@@ -18,6 +20,21 @@ StabilityCase lit_air(std::string name, std::string parameter, const reference::
     test.scene.lights = {light};
     test.scene.fog.settings.storage = volumetrics::StorageFormat::fp32;
     return test;
+}
+
+/// The picture twice: the light in the froxels, and along each pixel's own ray as by default, where nothing lies
+/// between columns and slices and only single precision is left.
+void add_both(std::vector<StabilityCase>& cases, StabilityCase test, double froxels_bound,
+              double pixels_bound = pixels_smooth) {
+    const std::string parameter = test.parameter;
+    test.parameter = parameter + ", froxels";
+    test.scene.fog.settings.airlight.max_lights = 0;
+    test.bound = froxels_bound;
+    cases.push_back(test);
+    test.parameter = parameter + ", pixels";
+    test.scene.fog.settings.airlight = {};
+    test.bound = pixels_bound;
+    cases.push_back(std::move(test));
 }
 
 void add_intensities(std::vector<StabilityCase>& cases) {
@@ -40,9 +57,14 @@ void add_distances(std::vector<StabilityCase>& cases) {
         StabilityCase test =
             lit_air("light_distance", value_text(distance_m, "m"),
                     {.position = {0.0, distance_m, 0.0}, .intensity_cd = glm::dvec3(candela)}, 100.0 + distance_m);
-        test.bound = distance_m > 0.0 ? 2e-2 : 0.4; // at the eye all rays pass it within a froxel
         test.quick = distance_m == 0.0 || distance_m == 1e5;
-        cases.push_back(std::move(test));
+        if (distance_m < 1.0) {
+            // At the eye all rays pass the light within a froxel.
+            add_both(cases, std::move(test), distance_m > 0.0 ? 2e-2 : 0.4);
+        } else { // out of the view: in the froxels
+            test.bound = 2e-2;
+            cases.push_back(std::move(test));
+        }
     }
 }
 
@@ -57,24 +79,34 @@ void add_places(std::vector<StabilityCase>& cases) {
                                            std::pair("in the first slice", 0.5)}) {
         StabilityCase test = lit_air("light_place", parameter,
                                      {.position = {0.0, 0.0, -boundary_m(slice)}, .intensity_cd = glm::dvec3(10.0)});
-        test.bound = 0.5;
         test.quick = slice == 8.0;
-        cases.push_back(std::move(test));
+        add_both(cases, std::move(test), 0.5);
     }
 }
 
+/// The beam stands in the view, in the plane of the rays right of the middle, so that the narrowest is met.
 void add_spots(std::vector<StabilityCase>& cases) {
+    const double x_m = 15.0 * std::tan(25.0 * degree) / 18.0; // of 18 rows of pixels, 50 degrees
     for (const double outer_degrees : {89.0, 30.0, 1.0, 1e-2, 0.0}) {
         StabilityCase test =
             lit_air("spot_angle", value_text(outer_degrees, "degrees"),
-                    {.position = {0.5, 25.0, -15.0}, // its beam stands in the view
+                    {.position = {x_m, 25.0, -15.0},
                      .intensity_cd = glm::dvec3(100.0),
                      .cone = reference::Cone{glm::dvec3(0.0, -1.0, 0.0), 0.0, outer_degrees * degree}});
         test.floor = 1.0; // a beam narrower than a froxel is in another pixel, or in none
-        // A froxel there is 4 degrees wide as the light sees it.
-        test.bound = outer_degrees > 45.0 ? 5e-2 : outer_degrees > 10.0 ? 0.2 : 12.0;
         test.quick = outer_degrees == 0.0 || outer_degrees == 89.0;
-        cases.push_back(std::move(test));
+        if (outer_degrees >= 30.0) {
+            // So wide that it counts as out of the view, and stays in froxels 4 degrees wide as the light sees them.
+            test.bound = outer_degrees > 45.0 ? 5e-2 : 0.2;
+            cases.push_back(std::move(test));
+        } else if (outer_degrees == 1.0) {
+            // The cone's edge is 1.5e-4 of cosine wide, of which single precision tells 6e-8 apart.
+            add_both(cases, std::move(test), 12.0, 5e-3);
+        } else {
+            // As good as dark, against the light without its cone: s I / (4 h) on an endless ray h beside it.
+            test.least_mean = 1e-5 * 100.0 / (4.0 * 25.0);
+            add_both(cases, std::move(test), 1e-9, 1e-9);
+        }
     }
 }
 

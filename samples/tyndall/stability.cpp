@@ -24,7 +24,8 @@ tl::expected<StabilityRow, std::string> measure(const engine::Device& device, co
     return StabilityRow{.name = test.name,
                         .parameter = test.parameter,
                         .measure = "relative error of the worst pixel",
-                        .worst = worst_relative_error(picture->radiance, exact_picture(test), test.floor),
+                        .worst =
+                            worst_relative_error(picture->radiance, exact_picture(test), test.floor, test.least_mean),
                         .bound = test.bound,
                         .broken = to_text(check_bounds(picture->stages, picture->radiance, tolerance), tolerance)};
 }
