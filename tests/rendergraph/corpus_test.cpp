@@ -115,6 +115,10 @@ std::map<std::string, ShowsInPlan> subjects() {
         }
         return waits.size() == 3 && std::find(waits.begin(), waits.end(), false) == waits.end();
     };
+    // The packer at its worst: of small frames, which refining always mends.
+    out["memory an eighth over its bound"] = [](const AnyFrame&, const Plan& plan) {
+        return plan.statistics.transient_bytes * 8 > plan.statistics.transient_bound_bytes * 9;
+    };
     return out;
 }
 
