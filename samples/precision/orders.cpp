@@ -71,7 +71,7 @@ std::vector<OrderRow> measured_orders() {
         for (const double growth : {1.0, 4.0}) {
             for (std::size_t i = 0; i < integrators.size(); ++i) {
                 OrderRow row{integrator_names[i], density, growth, {}, integrator_orders[i]};
-                for (int count = 16; count <= 4096; count *= 2) {
+                for (int count = OrderRow::least_slices; count <= 4096; count *= 2) {
                     row.errors.push_back(smooth_error(integrators[i], count, growth, density, exact));
                 }
                 row.order = fitted_order(row.errors);

@@ -36,6 +36,7 @@ inline constexpr std::array integrator_orders{1.0, 2.0, 2.0, 4.0}; ///< that the
 /// Errors at 16 to 4,096 slices and the order that fits them, of each integrator, for densities 1 and 20, slices of
 /// equal length and such of which the last is four times as long as the first.
 struct OrderRow {
+    static constexpr int least_slices = 16; ///< of the first error; the next has twice as many
     const char* integrator = "";
     double density = 1.0;
     double growth = 1.0;

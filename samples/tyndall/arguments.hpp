@@ -20,8 +20,10 @@ struct Size {
 
     bool operator==(const Size&) const = default;
 };
-/// "1280x720"; each side 1 to 16384. The error is one sentence that names the option.
-[[nodiscard]] tl::expected<Size, std::string> parse_size(std::string_view text, std::string_view option = "--size");
+/// "1280x720"; each side 1 to 16384. The error is one sentence that names --size.
+[[nodiscard]] tl::expected<Size, std::string> parse_size(std::string_view text);
+/// Columns of froxels, "160x90"; each side within the domain of grid.width and grid.height. Names --grid.
+[[nodiscard]] tl::expected<Size, std::string> parse_grid(std::string_view text);
 
 enum class Queues : std::uint8_t {
     one,

@@ -1,15 +1,18 @@
 // The tool `tyndall`: one executable, one subcommand a use.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <map>
 #include <optional>
+#include <span>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
 #include "samples/precision/choice.hpp"
+#include "samples/precision/orders.hpp"
 #include "samples/tyndall/arguments.hpp"
+#include "samples/tyndall/precision_report.hpp"
 
 namespace {
 
@@ -45,23 +48,28 @@ void add_schedule_options(CLI::App& command, ScheduleArguments& schedule) {
 /// What CLI11 cannot parse by itself.
 struct PrecisionTexts {
     std::string size = "320x180";
+    std::vector<std::string> integrators;
+    std::vector<std::string> visibilities;
     std::vector<std::string> grids;
     std::optional<std::string> error;
     std::optional<std::string> budget;
 };
 
+std::vector<std::string> texts_of(std::span<const char* const> names) {
+    return {names.begin(), names.end()};
+}
+
+/// The values whose names are given; every name is one of `names`, which lie in the values' order.
+template <typename Enum>
+std::vector<Enum> values_of(const std::vector<std::string>& given, std::span<const char* const> names) {
+    std::vector<Enum> values;
+    for (const std::string& name : given) {
+        values.push_back(static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin()));
+    }
+    return values;
+}
+
 void add_precision_options(CLI::App& command, PrecisionArguments& precision, PrecisionTexts& texts) {
-    using volumetrics::Integrator;
-    using volumetrics::SunVisibility;
-    static const std::map<std::string, Integrator> integrators{
-        {"euler", Integrator::euler},
-        {"half_slice", Integrator::half_slice},
-        {"exponential", Integrator::exponential},
-        {"exponential_quadratic", Integrator::exponential_quadratic}};
-    static const std::map<std::string, SunVisibility> visibilities{{"one_tap", SunVisibility::one_tap},
-                                                                   {"n_taps", SunVisibility::n_taps},
-                                                                   {"prefiltered", SunVisibility::prefiltered},
-                                                                   {"lit_fraction", SunVisibility::lit_fraction}};
     std::vector<std::string> scenes = precision_scene_names();
     scenes.insert(scenes.end(), {"file", "all"});
     command.add_option("--scene", precision.scene, "scene to measure")
@@ -72,11 +80,11 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, Pre
     command.add_option("--frames", precision.frames, "jittered frames; the first and the last are judged")
         ->check(CLI::Range(2U, 10000U))
         ->capture_default_str();
-    command.add_option("--integrator", precision.integrators, "integrators to measure, a comma between them")
-        ->transform(CLI::CheckedTransformer(integrators))
+    command.add_option("--integrator", texts.integrators, "integrators to measure, a comma between them")
+        ->check(CLI::IsMember(texts_of(integrator_names)))
         ->delimiter(',');
-    command.add_option("--visibility", precision.visibilities, "visibilities of the sun, a comma between them")
-        ->transform(CLI::CheckedTransformer(visibilities))
+    command.add_option("--visibility", texts.visibilities, "visibilities of the sun, a comma between them")
+        ->check(CLI::IsMember(texts_of(visibility_names)))
         ->delimiter(',');
     command.add_option("--grid", texts.grids, "columns of froxels, WIDTHxHEIGHT, a comma between several")
         ->delimiter(',');
@@ -92,12 +100,19 @@ void add_precision_options(CLI::App& command, PrecisionArguments& precision, Pre
     command.add_flag("--quick", precision.quick, "a sweep over a short ladder; minutes");
     command.add_flag("--causes", precision.causes,
                      "list what error is left when one cause at a time is removed from the first configuration");
-    command.add_flag("--orders", precision.orders,
-                     "print the integrators' errors over numbers of slices and their orders of convergence only");
+    CLI::Option* orders =
+        command.add_flag("--orders", precision.orders,
+                         "print the integrators' errors over numbers of slices and their orders of convergence only");
     command.add_flag("--airlight", precision.airlight, "make all surfaces black, so that the fog alone is judged");
     command.add_option("--out", precision.folder, "folder for tables, pictures, plots and a page (docs/precision.md)");
     command.add_option("--device", precision.device, "part of a device's name, or its index; see tyndall info");
     command.add_flag("--json", precision.json, "print JSON instead of the table");
+    for (CLI::Option* option : command.get_options()) {
+        if (option != orders && option != command.get_help_ptr() && !option->check_lname("json") &&
+            !option->check_lname("out")) {
+            orders->excludes(option);
+        }
+    }
 }
 
 void add_stability_options(CLI::App& command, StabilityArguments& stability) {
@@ -105,7 +120,7 @@ void add_stability_options(CLI::App& command, StabilityArguments& stability) {
     names.emplace_back("all");
     command.add_option("--case", stability.name, "what to vary")->check(CLI::IsMember(names))->capture_default_str();
     command.add_flag("--quick", stability.quick, "only the extremes of each case, and fewer frames");
-    command.add_option("--out", stability.folder, "folder for stability.csv and stability.json");
+    command.add_option("--out", stability.folder, "folder for stability.csv, stability.json and plots");
     command.add_option("--device", stability.device, "part of a device's name, or its index; see tyndall info");
     command.add_flag("--json", stability.json, "print JSON instead of the table");
 }
@@ -118,11 +133,13 @@ tl::expected<void, std::string> parse_texts(const PrecisionTexts& texts, Precisi
         into = *parsed;
         return {};
     };
+    precision.integrators = values_of<volumetrics::Integrator>(texts.integrators, integrator_names);
+    precision.visibilities = values_of<volumetrics::SunVisibility>(texts.visibilities, visibility_names);
     tl::expected<void, std::string> result = take(parse_size(texts.size), precision.size);
     if (!texts.grids.empty()) {
         precision.grids.resize(texts.grids.size());
         for (std::size_t i = 0; result && i < texts.grids.size(); ++i) {
-            result = take(parse_size(texts.grids[i], "--grid"), precision.grids[i]);
+            result = take(parse_grid(texts.grids[i]), precision.grids[i]);
         }
     }
     if (result && texts.error) {
@@ -130,6 +147,9 @@ tl::expected<void, std::string> parse_texts(const PrecisionTexts& texts, Precisi
     }
     if (result && texts.budget) {
         result = take(parse_budget_ms(*texts.budget), precision.budget_ms);
+    }
+    if (result && precision.file && precision.scene != "all" && precision.scene != "file") {
+        result = tl::unexpected("--file is measured by --scene all or --scene file, not by --scene " + precision.scene);
     }
     return result;
 }

@@ -6,14 +6,15 @@
 
 #include "engine/file_io.hpp"
 #include "samples/precision/file_scene.hpp"
-#include "samples/precision/orders.hpp"
 #include "samples/precision/scene.hpp"
 #include "samples/tyndall/arguments.hpp"
+#include "samples/tyndall/machine.hpp"
 #include "samples/tyndall/precision_bench.hpp"
 #include "samples/tyndall/precision_causes.hpp"
 #include "samples/tyndall/precision_choice.hpp"
 #include "samples/tyndall/precision_files.hpp"
 #include "samples/tyndall/precision_ladder.hpp"
+#include "samples/tyndall/precision_orders.hpp"
 #include "samples/tyndall/precision_report.hpp"
 #include "samples/tyndall/precision_surfaces.hpp"
 #include "samples/tyndall/precision_truths.hpp"
@@ -119,13 +120,22 @@ Expected<Bench> make_bench(const PrecisionArguments& arguments, const engine::De
     return bench;
 }
 
+/// Why a study ended, and the exit code.
+struct Failure {
+    int code = exit_failed;
+    std::string sentence;
+};
+
 /// Measures, chooses and lists causes in one scene.
-Expected<void> study_scene(const PrecisionArguments& arguments, const engine::Device& device,
-                           const PrecisionScene& scene, Study& study, Progress& progress) {
+tl::expected<void, Failure> study_scene(const PrecisionArguments& arguments, const engine::Device& device,
+                                        const PrecisionScene& scene, Study& study, Progress& progress) {
     const std::vector<PrecisionConfiguration> all = configurations(arguments, scene);
     Expected<Bench> bench = make_bench(arguments, device, scene, all.size() > 1, study, progress);
+    const auto failed = [](std::string sentence) {
+        return tl::unexpected(Failure{.code = exit_failed, .sentence = std::move(sentence)});
+    };
     if (!bench) {
-        return tl::unexpected(bench.error());
+        return failed(bench.error());
     }
     std::vector<PrecisionRow> rows;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -133,12 +143,12 @@ Expected<void> study_scene(const PrecisionArguments& arguments, const engine::De
                       to_text(all[i]));
         const Expected<Measurement> measured = measure(*bench, all[i]);
         if (!measured) {
-            return tl::unexpected(measured.error());
+            return failed(measured.error());
         }
         rows.insert(rows.end(), measured->rows.begin(), measured->rows.end());
         if (i == 0 && arguments.folder) {
             if (const auto written = write_pictures(*arguments.folder, *bench, measured->last); !written) {
-                return written;
+                return tl::unexpected(Failure{.code = exit_bad_input, .sentence = written.error()});
             }
         }
     }
@@ -147,7 +157,7 @@ Expected<void> study_scene(const PrecisionArguments& arguments, const engine::De
     study.remarks += own_against_front(*bench, rows);
     const Expected<std::string> chosen = choose_and_run(arguments, *bench, rows);
     if (!chosen) {
-        return tl::unexpected(chosen.error());
+        return failed(chosen.error());
     }
     study.remarks += *chosen;
     study.rows.insert(study.rows.end(), rows.begin(), rows.end());
@@ -155,7 +165,7 @@ Expected<void> study_scene(const PrecisionArguments& arguments, const engine::De
         const auto causes = list_causes(*bench, all.front(),
                                         [&](const std::string& cause) { progress.show(scene.name + ", " + cause); });
         if (!causes) {
-            return tl::unexpected(causes.error());
+            return failed(causes.error());
         }
         study.causes.insert(study.causes.end(), causes->begin(), causes->end());
     }
@@ -201,16 +211,15 @@ int run_precision(const PrecisionArguments& arguments) {
         std::fprintf(stderr, "tyndall: %s\n", sentence.c_str());
         return code;
     };
-    if (arguments.orders) {
-        std::fputs(to_table(measured_orders()).c_str(), stdout);
-        return exit_ok;
-    }
     if (arguments.folder) {
         std::error_code error;
         std::filesystem::create_directories(*arguments.folder, error);
         if (!std::filesystem::is_directory(*arguments.folder)) {
             return fail(exit_bad_input, "Cannot make the folder '" + arguments.folder->string() + "'");
         }
+    }
+    if (arguments.orders) {
+        return run_orders(arguments);
     }
     const auto instance = engine::VulkanInstance::create(engine::Validation::off);
     if (!instance) {
@@ -229,12 +238,12 @@ int run_precision(const PrecisionArguments& arguments) {
         Progress progress;
         for (const PrecisionScene& scene : *scenes) {
             if (const auto done = study_scene(arguments, *device, scene, study, progress); !done) {
-                return fail(exit_bad_input, done.error());
+                return fail(done.error().code, done.error().sentence);
             }
         }
     }
     study.remarks += own_against_front_of_all(arguments.frames, study.rows);
-    const std::string device_text = device->info().name + ", " + device->info().driver;
+    const std::string device_text = machine_text(device->info());
     if (arguments.folder) {
         if (const auto written = write_files(arguments, study, device_text); !written) {
             return fail(exit_bad_input, written.error());

@@ -10,17 +10,16 @@
 #include <nlohmann/json.hpp>
 
 #include "samples/precision/choice.hpp"
+#include "samples/precision/orders.hpp"
 
 namespace tyndall::samples {
 namespace {
 
 const char* name_of(volumetrics::Integrator integrator) {
-    constexpr std::array names{"euler", "half_slice", "exponential", "exponential_quadratic"};
-    return names[static_cast<std::size_t>(integrator)];
+    return integrator_names[static_cast<std::size_t>(integrator)];
 }
 const char* name_of(volumetrics::SunVisibility visibility) {
-    constexpr std::array names{"one_tap", "n_taps", "prefiltered", "lit_fraction"};
-    return names[static_cast<std::size_t>(visibility)];
+    return visibility_names[static_cast<std::size_t>(visibility)];
 }
 
 std::string grid_text(Size grid) {

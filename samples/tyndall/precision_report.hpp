@@ -1,6 +1,7 @@
 // What the precision study prints and writes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -10,6 +11,9 @@
 #include "samples/tyndall/arguments.hpp"
 
 namespace tyndall::samples {
+
+/// By the values of SunVisibility; those of the integrators are in samples/precision/orders.hpp.
+inline constexpr std::array visibility_names{"one_tap", "n_taps", "prefiltered", "lit_fraction"};
 
 /// One picture against one truth.
 struct PrecisionRow {

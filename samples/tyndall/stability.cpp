@@ -5,6 +5,7 @@
 
 #include "engine/file_io.hpp"
 #include "samples/tyndall/arguments.hpp"
+#include "samples/tyndall/machine.hpp"
 #include "samples/tyndall/progress.hpp"
 #include "samples/tyndall/stability_pictures.hpp"
 #include "samples/tyndall/stability_report.hpp"
@@ -120,7 +121,7 @@ int run_stability(const StabilityArguments& arguments) {
     if (!rows) {
         return fail(exit_failed, rows.error());
     }
-    const std::string device_text = device->info().name + ", " + device->info().driver;
+    const std::string device_text = machine_text(device->info());
     if (arguments.folder) {
         for (const auto& [name, text] : {std::pair{"stability.csv", to_csv(*rows, device_text)},
                                          std::pair{"stability.json", to_json(*rows, device_text)}}) {

@@ -258,6 +258,44 @@ TEST(Precision, RefusesWhatItCannotMeasure) {
         EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
         EXPECT_NE(run.errors.find(arguments[1].substr(2)), std::string::npos) << run.errors;
     }
+    // The sentence names the option, and where it takes names, these.
+    const auto refusal = [](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "precision");
+        const ToolRun run = run_tool(arguments);
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+        return run.errors;
+    };
+    EXPECT_NE(refusal({"--integrator", "foo"}).find("foo not in {euler,half_slice,exponential,exponential_quadratic}"),
+              std::string::npos);
+    EXPECT_NE(refusal({"--visibility", "foo"}).find("foo not in {one_tap,n_taps,prefiltered,lit_fraction}"),
+              std::string::npos);
+    EXPECT_EQ(refusal({"--grid", "160x90,1x1"}),
+              "tyndall: --grid must be WIDTHxHEIGHT with both from 2 to 1024, not '1x1'\n");
+    EXPECT_EQ(refusal({"--scene", "slab", "--file", "hall.gltf"}),
+              "tyndall: --file is measured by --scene all or --scene file, not by --scene slab\n");
+    for (const char* option : {"--scene=slab", "--error=2%", "--sweep", "--size=32x18"}) {
+        const std::string sentence = refusal({"--orders", option});
+        EXPECT_NE(sentence.find("--orders"), std::string::npos) << sentence;
+        EXPECT_NE(sentence.find(std::string_view(option).substr(0, std::string_view(option).find('='))),
+                  std::string::npos)
+            << sentence;
+    }
+}
+
+TEST(Precision, OrdersAreWrittenToo) {
+    const std::filesystem::path folder = fresh_folder();
+    const ToolRun run = run_tool({"precision", "--orders", "--json", "--out", folder.string()});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const nlohmann::json rows = nlohmann::json::parse(run.output)["rows"];
+    ASSERT_EQ(rows.size(), 16U); // integrators, densities, slices equal or growing
+    for (const nlohmann::json& row : rows) {
+        EXPECT_NEAR(row["order"].get<double>(), row["expected"].get<double>(), 0.1) << row;
+        EXPECT_EQ(row["relative_errors"].size(), 9U);
+    }
+    std::ifstream csv(folder / "orders.csv");
+    EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 1 + 16 * 9);
+    std::filesystem::remove_all(folder);
 }
 
 } // namespace
