@@ -142,7 +142,7 @@ tl::expected<std::uint64_t, ExecuteError> ExecutorState::execute(VkCommandBuffer
     if (Result begun = begin_frame(); !begun) {
         return tl::unexpected(explained(std::move(begun.error())));
     }
-    gather_usage(graph, work.usage);
+    gather_usage(graph, info.poison_transients, work.usage);
     map_queues();
     if (Result bound = bind_objects(given); !bound) {
         return tl::unexpected(explained(std::move(bound.error())));
@@ -284,7 +284,7 @@ tl::expected<Executor, ExecuteError> Executor::create(ExecutorInfo info) {
 
 MemoryRequirements Executor::memory_requirements(const GraphDesc& graph) const {
     std::vector<VkFlags> usage;
-    gather_usage(graph, usage);
+    gather_usage(graph, state_->info.poison_transients, usage);
     MemoryRequirements out;
     out.buffer_image_granularity = state_->info.buffer_image_granularity;
     for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {

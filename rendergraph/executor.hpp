@@ -61,6 +61,10 @@ struct ExecutorInfo {
     bool timestamps_need_full_barrier = false; ///< a full barrier after each timestamp (Mesa's lavapipe charges work to
                                                ///< the wrong interval without it)
     bool debug_labels = false;                 ///< VK_EXT_debug_utils is enabled on the instance
+    /// Debug switch: transients and what a frame writes of its histories are filled with a pattern, NaN where there is
+    /// one, before their first write, so that reading what nobody wrote shows. What a queue cannot clear is left out.
+    /// Times of passes then hold the fills, and full barriers stand around them.
+    bool poison_transients = false;
 };
 
 /// The physical objects of one import for one frame.

@@ -73,7 +73,7 @@ bool same_key(const ObjectKey& a, const ObjectKey& b) {
            (a.kind == ResourceKind::buffer ? a.size_bytes == b.size_bytes : same_image(a.image, b.image));
 }
 
-void gather_usage(const GraphDesc& graph, std::vector<VkFlags>& usage) {
+void gather_usage(const GraphDesc& graph, bool poisoned, std::vector<VkFlags>& usage) {
     usage.clear();
     for (const ResourceDesc& desc : graph.resources) {
         usage.push_back(desc.kind == ResourceKind::image ? desc.image.extra_usage : desc.buffer.extra_usage);
@@ -82,6 +82,13 @@ void gather_usage(const GraphDesc& graph, std::vector<VkFlags>& usage) {
         const AccessInfo& row = access_info(access.access);
         usage[access.resource] |=
             graph.resources[access.resource].kind == ResourceKind::image ? row.image_usage : row.buffer_usage;
+    }
+    for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
+        const ResourceDesc& desc = graph.resources[resource];
+        if (poisoned && usage[resource] != 0 && can_poison(desc)) {
+            usage[resource] |= desc.kind == ResourceKind::image ? VkFlags{VK_IMAGE_USAGE_TRANSFER_DST_BIT}
+                                                                : VkFlags{VK_BUFFER_USAGE_TRANSFER_DST_BIT};
+        }
     }
     for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
         // The two copies of a history swap roles, so both can do what either must.

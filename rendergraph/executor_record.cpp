@@ -124,6 +124,9 @@ void ExecutorState::record_pass(VkCommandBuffer cmd, const PlannedPass& planned)
         add_before_consumer(work.plan->dependencies[planned.first_barrier + i]);
     }
     flush_barriers(cmd);
+    if (info.poison_transients) {
+        poison(cmd, planned);
+    }
 
     PassContext ctx;
     ctx.state_ = this;

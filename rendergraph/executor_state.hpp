@@ -125,6 +125,13 @@ struct Segment {
     std::uint32_t first_signal = 0, signal_count = 0; ///< into FrameWork::signals
 };
 
+/// A part of a transient image that is filled with a pattern before a pass begins it.
+struct PoisonedImage {
+    std::uint32_t resource = none;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< that the pass wants
+    VkImageSubresourceRange range = {};
+};
+
 /// The frame that is being recorded. Kept between frames so that a steady frame allocates nothing.
 struct FrameWork {
     const GraphDesc* graph = nullptr;
@@ -154,12 +161,18 @@ struct FrameWork {
     std::vector<std::uint64_t> entry_values; ///< by real queue, before the frame's first pass
     std::vector<VkRenderingAttachmentInfo> color_attachments;
     std::vector<std::size_t> multisampled; ///< of color_attachments
+    std::vector<PoisonedImage> poisoned_images;
+    std::vector<std::uint32_t> poisoned_buffers; ///< accesses
     std::vector<VkWriteDescriptorSet> writes;
     std::optional<ExecuteError> error; ///< the first one; undeclared accesses are gathered in its message
 };
 
 /// By resource: what any pass of the graph needs, culled or not, so that requirements and objects speak of the same.
-void gather_usage(const GraphDesc& graph, std::vector<VkFlags>& usage);
+/// `poisoned`: and what ExecutorInfo::poison_transients needs.
+void gather_usage(const GraphDesc& graph, bool poisoned, std::vector<VkFlags>& usage);
+
+/// Whether a resource of this kind can be filled with a pattern, on a queue that can do it.
+[[nodiscard]] bool can_poison(const ResourceDesc& desc);
 
 /// `range` in numbers: mips and layers counted, aspects named.
 [[nodiscard]] ImageRange resolved(const ImageRange& range, const ImageDesc& image);
@@ -235,6 +248,11 @@ public:
     void record_batch(VkCommandBuffer cmd, std::uint32_t index);
     void record_pass(VkCommandBuffer cmd, const PlannedPass& planned);
     [[nodiscard]] VkExtent2D begin_rendering(VkCommandBuffer cmd, const PlannedPass& planned);
+
+    // executor_poison.cpp: garbage where nothing has been written
+    void poison(VkCommandBuffer cmd, const PlannedPass& planned);
+    [[nodiscard]] bool starts_image(const Dependency& dependency, QueueKind queue) const;
+    [[nodiscard]] bool starts_bytes(const AccessDesc& access) const;
 
     // executor_submit.cpp: logical queues onto real ones, segments, semaphores
     void map_queues();

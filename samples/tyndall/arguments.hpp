@@ -54,7 +54,8 @@ struct RenderArguments {
     std::string device;
     Queues queues = Queues::one; ///< that the plan is made for
     bool validate = false;
-    bool fp32 = false; ///< scene colour in 32 bits, as --out *.exr does by itself
+    bool poison = false; ///< transients hold garbage until they are written
+    bool fp32 = false;   ///< scene colour in 32 bits, as --out *.exr does by itself
     bool json = false;
 };
 

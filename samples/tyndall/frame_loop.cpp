@@ -82,6 +82,7 @@ Result FrameLoop::make(engine::Scene scene, FrameLoopInfo info) {
     }
     rg::ExecutorInfo executor_info = device_->executor_info(profile_);
     executor_info.frames_in_flight = frames_in_flight;
+    executor_info.poison_transients = info.poison;
     auto executor = rg::Executor::create(std::move(executor_info));
     if (!executor) {
         return tl::unexpected(engine::Error{executor.error().message});

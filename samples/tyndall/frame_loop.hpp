@@ -33,6 +33,7 @@ struct FrameLoopInfo {
     bool ask_for_async =
         true; ///< of two: the fog asks for async compute; else measured durations decide (with profile)
     bool profile = false;
+    bool poison = false; ///< rg::ExecutorInfo::poison_transients
 };
 
 /// What one frame is to leave behind.

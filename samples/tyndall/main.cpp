@@ -198,6 +198,9 @@ int run(int argc, char** argv) {
         ->capture_default_str();
     render_command->add_flag("--validate", render.validate,
                              "run under the Khronos validation layer; a message fails the run");
+    render_command->add_flag("--poison", render.poison,
+                             "fill transients with NaN before they are written: a picture that changes reads what "
+                             "nobody wrote");
     render_command->add_flag("--fp32", render.fp32, "32-bit scene colour and froxels");
     render_command->add_flag("--json", render.json, "print the timing table as JSON");
 

@@ -329,6 +329,7 @@ Expected<void> render(const RenderArguments& arguments) {
     info.ask_for_async = arguments.queues == Queues::two;
     info.profile = arguments.queues == Queues::measured || arguments.timing || arguments.timing_file ||
                    arguments.explain || arguments.explain_file || arguments.json || arguments.export_frame;
+    info.poison = arguments.poison;
     info.renderer.exposure.ev100 = arguments.exposure_ev100;
     const bool exr = std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
                                  [](const auto& path) { return path.extension() == ".exr"; });

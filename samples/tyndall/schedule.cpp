@@ -177,7 +177,10 @@ Expected<rg::Plan> plan_for(const ScheduleArguments& arguments, const rg::Frame&
         }
         refined = refined && name != no_refinement_switch;
         if (name == poison_switch) {
-            std::fprintf(stderr, "note: poison acts when a frame is executed; the plan is the same with it\n");
+            std::fprintf(
+                stderr,
+                "note: poison acts when a frame is executed, as by tyndall render --poison; the plan is the same "
+                "with it\n");
         }
     }
     const rg::MemoryRequirements memory = rg::estimate_memory(frame.graph);

@@ -13,8 +13,16 @@ using namespace rg;
 constexpr std::uint32_t numbers = 128;
 constexpr std::uint32_t buffers = 6;
 
-class RandomFrames : public ExecutorTest {
+/// With and without poisoned transients: the same numbers, and no more validation errors.
+class RandomFrames : public ExecutorTest, public testing::WithParamInterface<bool> {
 protected:
+    void SetUp() override {
+        ExecutorTest::SetUp();
+        ExecutorInfo info = executor_info();
+        info.poison_transients = GetParam();
+        make_executor(std::move(info));
+    }
+
     /// Passes that compute on transient buffers, some on async compute, all of them read back at the end. Returns what
     /// must come out.
     std::vector<std::uint32_t> declare(GraphBuilder& graph, std::uint32_t seed) {
@@ -48,7 +56,7 @@ protected:
     std::vector<HostBuffer> results_;
 };
 
-TEST_F(RandomFrames, GiveTheNumbersThatTheCpuGives) {
+TEST_P(RandomFrames, GiveTheNumbersThatTheCpuGives) {
     for (std::uint32_t i = 0; i < buffers; ++i) {
         results_.push_back(read_back_buffer(numbers * 4));
     }
@@ -67,7 +75,7 @@ TEST_F(RandomFrames, GiveTheNumbersThatTheCpuGives) {
     }
 }
 
-TEST_F(RandomFrames, OfEveryTopologyFoldWithoutAValidationError) {
+TEST_P(RandomFrames, OfEveryTopologyFoldWithoutAValidationError) {
     constexpr VkImageUsageFlags any_image = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                             VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     std::vector<HostImage> images;
@@ -98,6 +106,9 @@ TEST_F(RandomFrames, OfEveryTopologyFoldWithoutAValidationError) {
         ASSERT_TRUE(errors.empty()) << errors.front();
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(, RandomFrames, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Poisoned" : "Plain"; });
 
 } // namespace
 } // namespace tyndall::test

@@ -106,6 +106,15 @@ TEST_F(Pictures, TwoQueuesGiveTheBitsOfOne) {
     EXPECT_EQ(radiance("one.exr").values, radiance("two.exr").values);
 }
 
+// Any number made from a transient that nobody wrote would be NaN or far off.
+TEST_F(Pictures, NothingOfTheHallIsMadeFromWhatNobodyWrote) {
+    for (const char* queues : {"one", "two"}) {
+        render("plain.exr", {"--queues", queues});
+        render("poisoned.exr", {"--queues", queues, "--poison"});
+        EXPECT_EQ(radiance("plain.exr").values, radiance("poisoned.exr").values) << queues;
+    }
+}
+
 TEST_F(Pictures, TheSameRunGivesTheSamePicture) {
     render("first.png", {});
     render("second.png", {});
