@@ -328,7 +328,8 @@ Expected<void> render(const RenderArguments& arguments) {
     info.two_queues = arguments.queues != Queues::one;
     info.ask_for_async = arguments.queues == Queues::two;
     info.profile = arguments.queues == Queues::measured || arguments.timing || arguments.timing_file ||
-                   arguments.explain || arguments.explain_file || arguments.json || arguments.export_frame;
+                   arguments.explain || arguments.explain_file || arguments.json || arguments.export_frame ||
+                   arguments.trace;
     info.poison = arguments.poison;
     info.renderer.exposure.ev100 = arguments.exposure_ev100;
     const bool exr = std::any_of(arguments.outputs.begin(), arguments.outputs.end(),

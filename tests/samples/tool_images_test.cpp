@@ -3,9 +3,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "engine/image_io.hpp"
 #include "tests/samples/tool_process.hpp"
@@ -113,6 +115,24 @@ TEST_F(Pictures, NothingOfTheHallIsMadeFromWhatNobodyWrote) {
         render("poisoned.exr", {"--queues", queues, "--poison"});
         EXPECT_EQ(radiance("plain.exr").values, radiance("poisoned.exr").values) << queues;
     }
+}
+
+TEST_F(Pictures, TheTraceHoldsTheMeasuredTimelineBesideThePredictedOne) {
+    render("picture.png", {"--trace", file("trace.json").string()});
+    const nlohmann::json events = nlohmann::json::parse(text("trace.json"))["traceEvents"];
+    const auto durations_of = [&](int timeline) {
+        std::set<double> out;
+        for (const nlohmann::json& event : events) {
+            if (event["ph"] == "X" && event["pid"] == timeline) {
+                out.insert(event["dur"].get<double>());
+            }
+        }
+        return out;
+    };
+    constexpr int predicted = 1;
+    constexpr int measured = 2;
+    EXPECT_GT(durations_of(predicted).size(), 10U) << "each pass lasts as long as it was measured to";
+    EXPECT_GT(durations_of(measured).size(), 10U);
 }
 
 TEST_F(Pictures, TheSameRunGivesTheSamePicture) {
