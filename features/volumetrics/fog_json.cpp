@@ -1,8 +1,10 @@
 #include "features/volumetrics/fog_json.hpp"
 
+#include <charconv>
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -49,8 +51,24 @@ private:
     std::optional<Error> error_;
 };
 
-/// JSON has no word for what is no finite number, though many programs write one. As strings, they are met where the
-/// key and its range are known.
+/// The length of the number that begins at `at`, if it is one that double precision cannot hold; else 0.
+std::size_t length_of_overflow(std::string_view text, std::size_t at) {
+    const char before = at > 0 ? text[at - 1] : ' ';
+    const bool begins = text[at] == '-' || (text[at] >= '0' && text[at] <= '9');
+    if (!begins || std::string_view("+-.eE0123456789").find(before) != std::string_view::npos) {
+        return 0;
+    }
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), value);
+    const auto length = static_cast<std::size_t>(end - (text.data() + at));
+    const std::string_view number = text.substr(at, length);
+    const bool small = number.find("e-") != std::string_view::npos || number.find("E-") != std::string_view::npos ||
+                       number.starts_with("0.") || number.starts_with("-0.");
+    return error == std::errc::result_out_of_range && !small ? length : 0;
+}
+
+/// JSON has no word for what is no finite number, though many programs write one, and no limit to a number's size. As
+/// strings, both are met where the key and its range are known.
 std::string quote_words_for_no_number(std::string_view text) {
     std::string quoted;
     bool in_string = false;
@@ -63,6 +81,12 @@ std::string quote_words_for_no_number(std::string_view text) {
                 is_word = true;
                 break;
             }
+        }
+        const std::size_t overflow = in_string ? 0 : length_of_overflow(text, i);
+        if (overflow > 0) {
+            quoted += text[i] == '-' ? "\"-Infinity\"" : "\"Infinity\"";
+            i += overflow;
+            continue;
         }
         if (in_string && text[i] == '\\') {
             length = 2;

@@ -44,7 +44,7 @@ void read_map(Section& s, Fog& fog) {
 
 void read_density(Section& s, std::size_t volume, Fog& fog) {
     DensityPicture picture{.volume = volume};
-    s.read("slices", picture.slices);
+    s.read_whole("slices", picture.slices, 1, DensityTexels::most);
     if (picture.slices < 1 || picture.slices > DensityTexels::most) {
         s.complain(s.path_of("slices"), "must be between 1 and " + std::to_string(DensityTexels::most) + ", not " +
                                             std::to_string(picture.slices));
@@ -90,7 +90,7 @@ void read_noise(Section& s, DensityNoise& noise) {
     s.read("scale_m", noise.scale_m);
     s.read("wind_m_s", noise.wind_m_s);
     if (noise.kind == NoiseKind::perlin) {
-        s.read("octaves", noise.octaves);
+        s.read_whole("octaves", noise.octaves, 1, DensityNoise::most_octaves);
         s.read("gain", noise.gain);
         return;
     }

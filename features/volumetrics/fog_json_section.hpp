@@ -47,8 +47,11 @@ public:
         }
         for (auto entry = object_->begin(); entry != object_->end(); ++entry) {
             if (!known_.contains(entry.key())) {
-                *error_ =
-                    *error_ ? *error_ : std::optional(Error{path_of(entry.key()) + " is not a key of the fog file."});
+                std::string keys; // beside others they may be others: of another kind of noise, say
+                for (const std::string& key : known_) {
+                    keys += (keys.empty() ? "" : ", ") + key;
+                }
+                complain(path_of(entry.key()), "is not a key here, where the keys are " + keys);
             }
         }
     }
@@ -75,14 +78,19 @@ public:
             }
         }
     }
-    void read(const char* key, std::uint32_t& value) {
-        if (const Json* json = find(key)) {
-            const auto* whole = json->get_ptr<const Json::number_unsigned_t*>();
-            if (whole != nullptr && *whole <= std::numeric_limits<std::uint32_t>::max()) {
-                value = static_cast<std::uint32_t>(*whole);
-            } else {
-                complain(path_of(key), "must be a whole number that is not negative");
-            }
+    /// A whole number; that it lies in the range, which is named where it is none, is left to `validate`.
+    void read_whole(const char* key, std::uint32_t& value, std::uint32_t least, std::uint32_t most) {
+        const Json* json = find(key);
+        if (json == nullptr) {
+            return;
+        }
+        const double given = json->is_number() ? json->get<double>() : std::numeric_limits<double>::quiet_NaN();
+        if (given >= 0.0 && given <= std::numeric_limits<std::uint32_t>::max() && given == std::floor(given)) {
+            value = static_cast<std::uint32_t>(given);
+        } else {
+            complain(path_of(key), "must be a whole number between " + std::to_string(least) + " and " +
+                                       std::to_string(most) +
+                                       (json->is_number() ? ", not " + text_of(given) : std::string()));
         }
     }
     void read(const char* key, std::string& value) {
@@ -252,9 +260,8 @@ private:
             return fallback;
         }
         const double value = json.get<double>();
-        if (!std::isfinite(value) || std::abs(value) > static_cast<double>(std::numeric_limits<float>::max())) {
-            complain(path, "must be a finite number of single precision");
-            return fallback;
+        if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max())) {
+            return value > 0.0 ? std::numeric_limits<float>::infinity() : -std::numeric_limits<float>::infinity();
         }
         return static_cast<float>(value);
     }

@@ -1,14 +1,18 @@
 #include "features/volumetrics/fog_json_section.hpp"
+#include "shaders/common/airlight.h"
 
 namespace tyndall::volumetrics {
 
 void read_settings(Section& root, Settings& settings, std::optional<Error>& error) {
     subsection(root, "grid", error, [&](Section& s) {
-        s.read("width", settings.grid.width);
-        s.read("height", settings.grid.height);
-        s.read("slices", settings.grid.slices);
+        s.read_whole("width", settings.grid.width, 2, 1024);
+        s.read_whole("height", settings.grid.height, 2, 1024);
+        s.read_whole("slices", settings.grid.slices, 8, 512);
         s.read("range_m", settings.grid.range_m);
         s.read_list("curve_m", settings.grid.curve_m);
+        if (s.has("curve_m") && settings.grid.curve_m.empty()) {
+            s.complain("The number of grid.curve_m's depths", "must be between 1 and 8, not 0");
+        }
         if (!settings.grid.curve_m.empty()) {
             settings.grid.law = DepthLawKind::curve;
             settings.grid.range_m = s.find("range_m") != nullptr ? settings.grid.range_m : settings.grid.curve_m.back();
@@ -40,15 +44,17 @@ void read_settings(Section& root, Settings& settings, std::optional<Error>& erro
     root.read("error_estimate", settings.error_estimate);
     root.read("light_path", settings.light_path,
               {{"none", LightPath::none}, {"closed_form", LightPath::closed_form}, {"march", LightPath::march}});
-    root.read("light_path_steps", settings.light_path_steps);
-    subsection(root, "airlight", error, [&](Section& s) { s.read("max_lights", settings.airlight.max_lights); });
+    root.read_whole("light_path_steps", settings.light_path_steps, 1, 64);
+    subsection(root, "airlight", error, [&](Section& s) {
+        s.read_whole("max_lights", settings.airlight.max_lights, 0, TYNDALL_AIRLIGHT_COUNT);
+    });
     subsection(root, "visibility", error, [&](Section& s) {
         s.read("method", settings.visibility.method,
                {{"one_tap", SunVisibility::one_tap},
                 {"n_taps", SunVisibility::n_taps},
                 {"prefiltered", SunVisibility::prefiltered},
                 {"lit_fraction", SunVisibility::lit_fraction}});
-        s.read("taps", settings.visibility.taps);
+        s.read_whole("taps", settings.visibility.taps, 1, 64);
     });
 }
 

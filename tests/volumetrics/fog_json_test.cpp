@@ -1,4 +1,9 @@
 // Every mistake in a fog file is refused with one sentence that names the key.
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "features/volumetrics/fog_json.hpp"
@@ -9,6 +14,11 @@ namespace {
 std::string refusal(std::string_view text) {
     const auto fog = parse_fog_json(text);
     return fog ? "accepted" : fog.error().message;
+}
+
+/// Of a refusal, up to its first comma.
+std::string begin_of(const std::string& sentence) {
+    return sentence.substr(0, sentence.find(','));
 }
 
 TEST(FogJson, EmptyObjectGivesDocumentedDefaults) {
@@ -104,9 +114,12 @@ TEST(FogJson, ShapeFollowsRangeUnlessGiven) {
 }
 
 TEST(FogJson, UnknownKeysAreNamedByPath) {
-    EXPECT_EQ(refusal(R"({"fog": {}})"), "fog is not a key of the fog file.");
+    EXPECT_EQ(refusal(R"({"fog": {}})"),
+              "fog is not a key here, where the keys are airlight, ambient, error_estimate, grid, integrator, "
+              "light_path, light_path_steps, medium, phase, shadow, storage, temporal, visibility.");
     EXPECT_EQ(refusal(R"({"medium": {"height": {"fallof_per_m": 1}}})"),
-              "medium.height.fallof_per_m is not a key of the fog file.");
+              "medium.height.fallof_per_m is not a key here, where the keys are albedo, base_height_m, "
+              "emission_per_m, extinction_per_m, falloff_per_m.");
 }
 
 TEST(FogJson, RepeatedKeysAreRefused) {
@@ -119,8 +132,9 @@ TEST(FogJson, WrongTypesAreNamedByPath) {
     EXPECT_EQ(refusal(R"({"phase": {"g": "0.5"}})"), "phase.g must be a number.");
     EXPECT_EQ(refusal(R"({"ambient": {"radiance": [1, 2]}})"), "ambient.radiance must be an array of 3 numbers.");
     EXPECT_EQ(refusal(R"({"ambient": {"radiance": [1, null, 2]}})"), "ambient.radiance[1] must be a number.");
-    EXPECT_EQ(refusal(R"({"grid": {"slices": 1.5}})"), "grid.slices must be a whole number that is not negative.");
-    EXPECT_EQ(refusal(R"({"grid": {"width": -1}})"), "grid.width must be a whole number that is not negative.");
+    EXPECT_EQ(refusal(R"({"grid": {"slices": 1.5}})"),
+              "grid.slices must be a whole number between 8 and 512, not 1.5.");
+    EXPECT_EQ(refusal(R"({"grid": {"width": -1}})"), "grid.width must be a whole number between 2 and 1024, not -1.");
     EXPECT_EQ(refusal(R"({"temporal": {"enabled": 1}})"), "temporal.enabled must be true or false.");
     EXPECT_EQ(refusal(R"({"storage": "fp64"})"), R"(storage must be "fp16" or "fp32".)");
     EXPECT_EQ(refusal(R"({"integrator": "simpson"})"),
@@ -152,6 +166,8 @@ TEST(FogJson, ImpossibleValuesNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"grid": {"law": "log"}})"),
               "grid.law must be one of \"shaped\", \"linear\", \"curve\", \"scene\".");
     EXPECT_EQ(refusal(R"({"grid": {"law": "curve"}})"),
+              "The number of grid.curve_m's depths must be between 1 and 8, not 0.");
+    EXPECT_EQ(refusal(R"({"grid": {"curve_m": []}})"),
               "The number of grid.curve_m's depths must be between 1 and 8, not 0.");
     EXPECT_EQ(refusal(R"({"grid": {"curve_m": [1, 2, 3, 4, 5, 6, 7, 8, 9]}})"),
               "The number of grid.curve_m's depths must be between 1 and 8, not 9.");
@@ -215,8 +231,9 @@ TEST(FogJson, ImpossibleNoisesNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"medium": {"noise": {"kind": "simplex"}}})"),
               "medium.noise.kind must be one of \"perlin\", \"perlin_worley\".");
     EXPECT_EQ(refusal(R"({"medium": {"noise": {"coverage": 0.5}}})"),
-              "medium.noise.coverage is not a key of the fog file.");
-    EXPECT_EQ(noise(R"("octaves": 2)"), "medium.noise.octaves is not a key of the fog file.");
+              "medium.noise.coverage is not a key here, where the keys are amplitude, gain, kind, octaves, scale_m, "
+              "wind_m_s.");
+    EXPECT_EQ(begin_of(noise(R"("octaves": 2)")), "medium.noise.octaves is not a key here");
     EXPECT_EQ(noise(R"("coverage": 0)"), "medium.noise.coverage must be between 0.01 and 1, not 0.");
     EXPECT_EQ(noise(R"("detail": 1)"), "medium.noise.detail must be between 0 and 0.95, not 1.");
     EXPECT_EQ(noise(R"("detail": NaN)"), "medium.noise.detail must be between 0 and 0.95, not nan.");
@@ -262,7 +279,7 @@ TEST(FogJson, ImpossibleDensitiesNameKeyAndRange) {
     const std::string image = R"("image": "a.png", )";
     EXPECT_EQ(map(""), "medium.map.image must name a PNG file beside the fog file.");
     EXPECT_EQ(map(R"("image": 3)"), "medium.map.image must be a text that is not empty.");
-    EXPECT_EQ(map(image + R"("sise_m": [1, 1])"), "medium.map.sise_m is not a key of the fog file.");
+    EXPECT_EQ(begin_of(map(image + R"("sise_m": [1, 1])")), "medium.map.sise_m is not a key here");
     EXPECT_EQ(map(image + R"("size_m": [1])"), "medium.map.size_m must be an array of 2 numbers.");
     EXPECT_EQ(map(image + R"("size_m": [1, 0])"), "medium.map.size_m[1] must be between 0.01 and 1e+06, not 0.");
     EXPECT_EQ(map(image + R"("center_m": [NaN, 0])"),
@@ -310,8 +327,8 @@ TEST(FogJson, ImpossibleVolumesNameKeyAndRange) {
               "medium.volumes[0].half_size_m[1] must be between 0 and 1e+06, not -1.");
     EXPECT_EQ(of_volume(R"("rotation": [0, 0, 0, 2])"),
               "The length of medium.volumes[0].rotation must be between 0.999 and 1.001, not 2.");
-    EXPECT_EQ(of_volume(R"("radius_m": 1)"), "medium.volumes[0].radius_m is not a key of the fog file.");
-    EXPECT_EQ(of_volume(R"("factor": 1)"), "medium.volumes[0].factor is not a key of the fog file.");
+    EXPECT_EQ(begin_of(of_volume(R"("radius_m": 1)")), "medium.volumes[0].radius_m is not a key here");
+    EXPECT_EQ(begin_of(of_volume(R"("factor": 1)")), "medium.volumes[0].factor is not a key here");
     EXPECT_EQ(of_volume(R"("shape": "cone")"),
               R"(medium.volumes[0].shape must be one of "box", "ellipsoid", "sphere".)");
     EXPECT_EQ(of_volume(R"("blend": "multiply", "factor": -1)"),
@@ -330,8 +347,8 @@ TEST(FogJson, ImpossiblePhasesAndAmbientsNameKeyAndRange) {
     EXPECT_EQ(refusal(R"({"phase": {"lobes": []}})"), "phase.lobes must be an array of 1 to 4 objects.");
     EXPECT_EQ(refusal(R"({"phase": {"lobes": [{}, {}, {}, {}, {}]}})"),
               "phase.lobes must be an array of 1 to 4 objects.");
-    EXPECT_EQ(refusal(R"({"phase": {"lobes": [{"asymmetry": 1}]}})"),
-              "phase.lobes[0].asymmetry is not a key of the fog file.");
+    EXPECT_EQ(begin_of(refusal(R"({"phase": {"lobes": [{"asymmetry": 1}]}})")),
+              "phase.lobes[0].asymmetry is not a key here");
     EXPECT_EQ(refusal(R"({"phase": {"lobes": [{"function": "mie"}]}})"),
               R"(phase.lobes[0].function must be one of "isotropic", "rayleigh", "henyey_greenstein", "schlick", )"
               R"("cornette_shanks".)");
@@ -343,8 +360,50 @@ TEST(FogJson, ImpossiblePhasesAndAmbientsNameKeyAndRange) {
 }
 
 TEST(FogJson, NumbersThatSinglePrecisionLacksAreRefused) {
-    EXPECT_EQ(refusal(R"({"phase": {"g": 1e60}})"), "phase.g must be a finite number of single precision.");
-    EXPECT_EQ(refusal(R"({"phase": {"g": 1e999}})").substr(0, 30), "The fog file is not valid JSON");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 1e60}})"), "phase.g must be between -0.999 and 0.999, not inf.");
+    EXPECT_EQ(refusal(R"({"grid": {"range_m": -1e300}})"), "grid.range_m must be between 0.01 and 1e+07, not -inf.");
+}
+
+TEST(FogJson, NumbersThatDoublePrecisionLacksAreRefusedWithKeyAndRange) {
+    EXPECT_EQ(refusal(R"({"phase": {"g": 1e999}})"), "phase.g must be between -0.999 and 0.999, not inf.");
+    EXPECT_EQ(refusal(R"({"medium":{"homogeneous":{"albedo":[1,-1E+400,0]}}})"),
+              "medium.homogeneous.albedo[1] must be between 0 and 1, not -inf.");
+    EXPECT_EQ(refusal(R"({"grid": {"range_m": 1)" + std::string(400, '0') + "}}"),
+              "grid.range_m must be between 0.01 and 1e+07, not inf.");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 1e-999}})"), "accepted");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 0.)" + std::string(400, '0') + "1}}"), "accepted");
+    EXPECT_EQ(refusal(R"({"1e999": 1})").substr(0, 25), "1e999 is not a key here, ");
+    EXPECT_EQ(refusal(R"({"phase": {"g": 1e999.5}})").substr(0, 30), "The fog file is not valid JSON");
+}
+
+TEST(FogJson, WholeNumbersAreRefusedWithTheRangeThatValidateHas) {
+    const std::array<std::pair<std::string, std::string>, 7> keys{
+        {{"grid.width", R"({"grid": {"width": #}})"},
+         {"grid.height", R"({"grid": {"height": #}})"},
+         {"grid.slices", R"({"grid": {"slices": #}})"},
+         {"medium.noise.octaves", R"({"medium": {"noise": {"octaves": #}}})"},
+         {"light_path_steps", R"({"light_path_steps": #})"},
+         {"airlight.max_lights", R"({"airlight": {"max_lights": #}})"},
+         {"visibility.taps", R"({"visibility": {"taps": #}})"}}};
+    for (const auto& [key, text] : keys) {
+        const auto with = [&, &key = key, &text = text](const std::string& value) {
+            std::string given = text;
+            const std::string sentence = refusal(given.replace(given.find('#'), 1, value));
+            EXPECT_EQ(sentence.substr(0, key.size()), key);
+            return sentence.substr(std::min(sentence.size(), key.size()));
+        };
+        const std::string wide = with("4000000000");
+        const std::string range = wide.substr(0, wide.find(", not")); // of `validate`
+        const std::string whole = " must be a whole number" + range.substr(std::string(" must be").size());
+        EXPECT_EQ(with("-5"), whole + ", not -5.");
+        EXPECT_EQ(with("1.5"), whole + ", not 1.5.");
+        EXPECT_EQ(with("99999999999999999999"), whole + ", not 1e+20.");
+        EXPECT_EQ(with("1e999"), whole + ".");
+        EXPECT_EQ(with("\"8\""), whole + ".");
+    }
+    EXPECT_EQ(parse_fog_json(R"({"grid": {"slices": 16.0}})")->settings.grid.slices, 16U);
+    EXPECT_EQ(refusal(R"({"medium": {"volumes": [{"density": {"image": "a.png", "slices": -1}}]}})"),
+              "medium.volumes[0].density.slices must be a whole number between 1 and 2048, not -1.");
 }
 
 TEST(FogJson, WhatIsNoFiniteNumberIsRefusedWithKeyAndRange) {
@@ -353,8 +412,8 @@ TEST(FogJson, WhatIsNoFiniteNumberIsRefusedWithKeyAndRange) {
               "medium.homogeneous.extinction_per_m must be between 0 and 1e+06, not inf.");
     EXPECT_EQ(refusal(R"({"medium": {"noise": {"wind_m_s": [0, -Infinity, 0]}}})"),
               "medium.noise.wind_m_s[1] must be between -1000 and 1000, not -inf.");
-    EXPECT_EQ(refusal(R"({"grid": {"width": NaN}})"), "grid.width must be a whole number that is not negative.");
-    EXPECT_EQ(refusal(R"({"\"NaN": 1})"), "\"NaN is not a key of the fog file.");
+    EXPECT_EQ(refusal(R"({"grid": {"width": NaN}})"), "grid.width must be a whole number between 2 and 1024.");
+    EXPECT_EQ(begin_of(refusal(R"({"\"NaN": 1})")), "\"NaN is not a key here");
 }
 
 TEST(FogJson, BrokenTextSaysWhere) {
