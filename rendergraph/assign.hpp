@@ -31,6 +31,7 @@ struct QueueChoices {
     Scratch<QueueReason> reason; ///< why home
     bool any_free = false;       ///< some kept pass has more than one queue
     bool any_away = false;       ///< the home of some kept pass is not the graphics queue
+    Diagnostics errors;          ///< passes that forbid all that they are left
 };
 /// O(accesses).
 [[nodiscard]] QueueChoices choose_queues(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,

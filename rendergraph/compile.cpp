@@ -111,6 +111,9 @@ tl::expected<Plan, Diagnostics> compile_valid(const GraphDesc& graph, const Queu
     Kept kept = cull(graph, everything, order, options.culling);
     const Flow flow = flow_between_kept(graph, cells, everything, kept);
     const QueueChoices choices = choose_queues(graph, topology, kept, options.async);
+    if (!choices.errors.empty()) {
+        return tl::unexpected(choices.errors);
+    }
     const Work work = collect_work(flow, order, kept, choices, topology, costs);
     Decided decided =
         decide(work, choices, options, costs,
@@ -179,6 +182,12 @@ tl::expected<Plan, Diagnostics> compile(const GraphDesc& graph, const QueueTopol
     const stages::ScratchScope scope;
     Diagnostics errors = graph.declaration_errors;
     append(errors, stages::validate(graph, topology));
+    const bool is_described = std::none_of(errors.begin(), errors.end(), [](const Diagnostic& mistake) {
+        return mistake.code == DiagnosticCode::bad_description;
+    });
+    if (is_described) {
+        append(errors, stages::validate_memory(graph, memory));
+    }
     if (!errors.empty()) {
         append(errors, further_mistakes(graph, errors));
         return tl::unexpected(std::move(errors));

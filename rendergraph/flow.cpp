@@ -116,7 +116,10 @@ private:
 
     void visit(std::uint32_t resource, std::uint32_t index) {
         const AccessDesc& access = graph_.accesses[index];
-        const bool starts_with_content = graph_.resources[resource].lifetime != ResourceLifetime::transient;
+        const ResourceDesc& desc = graph_.resources[resource];
+        const bool imported_undefined = desc.import != none && desc.kind == ResourceKind::image &&
+                                        graph_.imports[desc.import].initial_layout == VK_IMAGE_LAYOUT_UNDEFINED;
+        const bool starts_with_content = desc.lifetime != ResourceLifetime::transient && !imported_undefined;
         bool unwritten = false;
         for_each_cell(cells_.of_resource[resource], cells_.of_access[index], [&](std::uint32_t cell) {
             CellState& state = states_[cell];
@@ -141,19 +144,19 @@ private:
             }
         });
         if (unwritten) {
-            const ResourceDesc& desc = graph_.resources[resource];
             const std::string& pass = graph_.passes[access.pass].name;
-            flow_.errors.push_back({.code = DiagnosticCode::read_of_unwritten,
-                                    .pass = pass,
-                                    .resource = desc.name,
-                                    .message = "Pass " + quoted(pass) +
-                                               (access.direction == Direction::modify ? " modifies " : " reads ") +
-                                               quoted(desc.name) +
-                                               (cells_.of_resource[resource].whole ? "" : ", parts of") +
-                                               (cells_.of_resource[resource].whole ? ", which" : " which") +
-                                               " no pass wrote before; let a pass write it, or import it",
-                                    .where = access.where,
-                                    .other_where = desc.where});
+            flow_.errors.push_back(
+                {.code = DiagnosticCode::read_of_unwritten,
+                 .pass = pass,
+                 .resource = desc.name,
+                 .message = "Pass " + quoted(pass) +
+                            (access.direction == Direction::modify ? " modifies " : " reads ") + quoted(desc.name) +
+                            (cells_.of_resource[resource].whole ? "" : ", parts of") +
+                            (cells_.of_resource[resource].whole ? ", which" : " which") + " no pass wrote before; " +
+                            (imported_undefined ? "let a pass write it, or import it with the layout it comes in"
+                                                : "let a pass write it, or import it"),
+                 .where = access.where,
+                 .other_where = desc.where});
         }
     }
 

@@ -7,8 +7,10 @@
 
 namespace tyndall::rg {
 
-/// Of all transients together, and of each size and offset in a plan's file: more than any device has.
+/// Of all transients together: more than any device has.
 inline constexpr VkDeviceSize most_bytes = VkDeviceSize{1} << 50U;
+/// Of each size and offset in a plan's file: what lies between transients counts too.
+inline constexpr VkDeviceSize most_plan_bytes = 2 * most_bytes;
 /// Of a frame, in a plan's file.
 inline constexpr std::int64_t most_ns = std::int64_t{1} << 60U;
 

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "rendergraph/formats.hpp"
+#include "rendergraph/limits.hpp"
 #include "rendergraph/memory_types.hpp"
 
 namespace tyndall::rg {
@@ -13,8 +15,14 @@ namespace tyndall::rg {
 MemoryRequirements estimate_memory(const GraphDesc& graph) {
     constexpr VkDeviceSize buffer_alignment = 256;
     constexpr VkDeviceSize image_alignment = 4096;
+    static constexpr VkDeviceSize too_many_bytes = 2 * most_bytes;
+    constexpr std::uint32_t most_mips = 32;
+    // What is more than all transients may have stays so, without going on to where numbers end.
     const auto up = [](VkDeviceSize size, VkDeviceSize alignment) {
-        return (size + alignment - 1) / alignment * alignment;
+        return (std::min(size, too_many_bytes) + alignment - 1) / alignment * alignment;
+    };
+    const auto times = [](VkDeviceSize a, VkDeviceSize b) {
+        return b != 0 && a > too_many_bytes / b ? too_many_bytes : a * b;
     };
     MemoryRequirements requirements;
     requirements.of_resource.reserve(graph.resources.size());
@@ -25,18 +33,52 @@ MemoryRequirements estimate_memory(const GraphDesc& graph) {
             continue;
         }
         const ImageDesc& image = resource.image;
-        VkDeviceSize texels = 0;
-        for (std::uint32_t mip = 0; mip < image.mips; ++mip) {
+        const FormatBlock block = format_block(image.format);
+        VkDeviceSize blocks = 0;
+        for (std::uint32_t mip = 0; mip < std::min(image.mips, most_mips); ++mip) {
             const auto at = [mip](std::uint32_t n) { return VkDeviceSize{std::max(n >> mip, 1U)}; };
-            texels += at(image.extent.width) * at(image.extent.height) * at(image.extent.depth);
+            const VkDeviceSize columns = (at(image.extent.width) + block.width - 1) / block.width;
+            const VkDeviceSize rows = (at(image.extent.height) + block.height - 1) / block.height;
+            blocks = std::min(blocks + times(times(columns, rows), at(image.extent.depth)), too_many_bytes);
         }
-        const VkDeviceSize bytes = texels * image.layers * format_texel_bytes(image.format) * image.samples;
+        const VkDeviceSize bytes = times(times(times(blocks, image.layers), block.bytes), image.samples);
         out = {up(bytes, image_alignment), image_alignment, ~0U};
     }
     return requirements;
 }
 
 namespace stages {
+
+Diagnostics validate_memory(const GraphDesc& graph, const MemoryRequirements& memory) {
+    Diagnostics errors;
+    const auto bad = [&](const ResourceDesc& resource, const std::string& what) {
+        errors.push_back({.code = DiagnosticCode::bad_description,
+                          .resource = resource.name,
+                          .message = "Resource '" + resource.name + "' " + what,
+                          .where = resource.where,
+                          .other_where = resource.where});
+    };
+    VkDeviceSize total = 0;
+    for (std::size_t r = 0; r < graph.resources.size(); ++r) {
+        const ResourceDesc& resource = graph.resources[r];
+        if (resource.lifetime == ResourceLifetime::imported) {
+            continue;
+        }
+        const VkDeviceSize size = r < memory.of_resource.size() ? memory.of_resource[r].size_bytes : 0;
+        if (size == 0) {
+            bad(resource, "has a format of which no size is known; ask the driver what memory it needs, or choose "
+                          "another format");
+        } else if (total <= most_bytes) {
+            total += std::min(size, most_bytes + 1);
+            if (total > most_bytes) {
+                bad(resource, "is more than the frame can have with what is declared before it, " +
+                                  std::to_string(most_bytes) + " bytes; make it smaller");
+            }
+        }
+    }
+    return errors;
+}
+
 namespace {
 
 /// The heap of a memory type; made when it is new.

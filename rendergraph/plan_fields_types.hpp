@@ -169,8 +169,8 @@ template <typename V>
 void fields(V& v, Placement& p) {
     v.word("kind", p.kind, placement_words);
     v.index_or_none("heap", p.heap, Table::heaps, p.kind == PlacementKind::heap);
-    v.value("offset_bytes", p.offset_bytes, most_bytes);
-    v.value("size_bytes", p.size_bytes, most_bytes);
+    v.value("offset_bytes", p.offset_bytes, most_plan_bytes);
+    v.value("size_bytes", p.size_bytes, most_plan_bytes);
     v.mask("image_usage", p.image_usage, image_usage_names());
     v.mask("buffer_usage", p.buffer_usage, buffer_usage_names());
     v.value("concurrent", p.concurrent);
@@ -183,7 +183,7 @@ void fields(V& v, Placement& p) {
 template <typename V>
 void fields(V& v, Heap& h) {
     v.value_or_all("memory_type_bits", h.memory_type_bits);
-    v.value("size_bytes", h.size_bytes, most_bytes);
+    v.value("size_bytes", h.size_bytes, most_plan_bytes);
 }
 template <typename V>
 void fields(V& v, AsyncDecision& d) {
@@ -204,9 +204,9 @@ void fields(V& v, VariantDecision& d) {
 }
 template <typename V>
 void fields(V& v, PlanStatistics& s) {
-    v.value("transient_bytes", s.transient_bytes, most_bytes);
-    v.value("transient_bytes_unaliased", s.transient_bytes_unaliased, most_bytes);
-    v.value("transient_bound_bytes", s.transient_bound_bytes, most_bytes);
+    v.value("transient_bytes", s.transient_bytes, most_plan_bytes);
+    v.value("transient_bytes_unaliased", s.transient_bytes_unaliased, most_plan_bytes);
+    v.value("transient_bound_bytes", s.transient_bound_bytes, most_plan_bytes);
     v.value("barrier_count", s.barrier_count);
     v.value("wait_count", s.wait_count);
 }

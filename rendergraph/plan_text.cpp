@@ -62,7 +62,10 @@ std::string_view name_of(Hazard hazard) {
 
 std::string why_kept(const GraphDesc& graph, const PlannedPass& pass) {
     switch (pass.keep_reason) {
-    case KeepReason::side_effect: return "side effect: " + graph.passes[pass.pass].side_effect;
+    case KeepReason::side_effect: {
+        const std::string& effect = graph.passes[pass.pass].side_effect;
+        return effect.empty() ? "a side effect without a name" : "side effect: " + effect;
+    }
     case KeepReason::writes_import: return "writes " + quoted(graph.resources[pass.keep_for].name) + " for the host";
     case KeepReason::writes_history:
         return "writes " + quoted(graph.resources[pass.keep_for].name) + " for the next frame";
@@ -80,8 +83,7 @@ std::string why_culled(const GraphDesc& graph, const CulledPass& pass) {
     case CullReason::consumer_culled: return "its consumer " + pass_name(graph, pass.because_of) + " is left out";
     case CullReason::all_passes_culled: return "all passes that touch it are left out";
     case CullReason::never_used: return "no pass touches it";
-    case CullReason::other_form:
-        return "another form of " + quoted(graph.variants[pass.because_of].name) + " makes the frame shorter";
+    case CullReason::other_form: return "another form of " + quoted(graph.variants[pass.because_of].name) + " is kept";
     }
     return "";
 }
@@ -96,7 +98,7 @@ std::string why_queue(const PlannedPass& pass) {
     case QueueReason::import_ordered_by_queue:
         return "only the first queue is ordered with the host's use of an import that it touches";
     case QueueReason::import_not_shared: return "an import that it touches is not shared between families";
-    case QueueReason::forbidden: return "every other queue that could is forbidden";
+    case QueueReason::forbidden: return "other queues that could are forbidden";
     case QueueReason::overlap_pays: return "beside other work there, the frame is shorter";
     case QueueReason::earliest_here: return "no other queue finishes it earlier";
     }

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "rendergraph/assign.hpp"
+#include "rendergraph/plan_text.hpp"
 
 namespace tyndall::rg::stages {
 namespace {
@@ -75,6 +76,35 @@ bool keep_unshared_imports_together(const GraphDesc& graph, const QueueTopology&
     return moved;
 }
 
+/// Passes that are left no queue but one that they forbid.
+Diagnostics broken_bans(const GraphDesc& graph, const QueueTopology& topology, const Kept& kept,
+                        const QueueChoices& choices) {
+    Diagnostics errors;
+    for (std::uint32_t pass = 0; pass < graph.passes.size(); ++pass) {
+        const PassDesc& desc = graph.passes[pass];
+        const QueueKind kind = topology.queues[choices.home[pass]].kind;
+        if (!kept.pass[pass] || desc.kind == PassKind::host || (desc.forbidden_queues & queue_bit(kind)) == 0) {
+            continue;
+        }
+        const bool asked = choices.reason[pass] == QueueReason::asked_for;
+        const bool by_import = choices.reason[pass] == QueueReason::import_ordered_by_queue ||
+                               choices.reason[pass] == QueueReason::import_not_shared;
+        std::string what = " is left no queue but one of the kind that it forbids, " + std::string(name_of(kind)) +
+                           "; allow it, or plan for a queue that can run the pass";
+        if (asked) {
+            what = " asks for a queue of the kind that it forbids, " + std::string(name_of(kind)) + "; choose one";
+        } else if (by_import) {
+            what += ", since " + why_queue({.queue_reason = choices.reason[pass]});
+        }
+        errors.push_back({.code = DiagnosticCode::queue_cannot,
+                          .pass = desc.name,
+                          .message = "Pass '" + desc.name + "'" + what,
+                          .where = desc.where,
+                          .other_where = desc.where});
+    }
+    return errors;
+}
+
 /// The queues where every command of a pass can run, and what kept it from others.
 class FreeChoice {
 public:
@@ -106,9 +136,12 @@ public:
                 open &= ~(QueueMask{1} << q);
             }
         }
-        if (open == 0 || open == 1) {
-            reason = open == 0 ? QueueReason::asked_for_but_no_such_queue : QueueReason::forbidden;
-            return 1;
+        if (open == 0) {
+            return 1; // which is forbidden too
+        }
+        const bool home_forbidden = (open & 1U) == 0;
+        if (home_forbidden || open == 1) {
+            reason = QueueReason::forbidden;
         }
         return open;
     }
@@ -180,6 +213,8 @@ QueueChoices choose_queues(const GraphDesc& graph, const QueueTopology& topology
             choices.home[pass] = asked.queue;
             choices.reason[pass] = asked.reason;
             any_asked_away = any_asked_away || asked.queue != 0;
+        } else if (!async && (desc.forbidden_queues & queue_bit(topology.queues[0].kind)) != 0) {
+            choices.reason[pass] = QueueReason::async_switched_off;
         } else if (several && kept.pass[pass]) {
             choices.allowed[pass] = free_choice(desc, choices.reason[pass]);
             choices.home[pass] = static_cast<std::uint32_t>(std::countr_zero(choices.allowed[pass]));
@@ -195,6 +230,9 @@ QueueChoices choose_queues(const GraphDesc& graph, const QueueTopology& topology
         }
         choices.any_free = choices.any_free || !is_one_queue(choices.allowed[pass]);
         choices.any_away = choices.any_away || (kept.pass[pass] && choices.home[pass] != 0);
+    }
+    if (async) { // switched off, all runs on the first queue, whatever was asked for or forbidden
+        choices.errors = broken_bans(graph, topology, kept, choices);
     }
     return choices;
 }

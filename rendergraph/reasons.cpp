@@ -195,7 +195,10 @@ std::string why_form(const GraphDesc& graph, const Plan& plan, std::uint32_t var
     switch (decision.reason) {
     case VariantReason::shortest_frame: text += "with it the frame is shortest"; break;
     case VariantReason::kept_by_hysteresis: text += "as before, since no other gains more than the threshold"; break;
-    case VariantReason::nothing_measured: text += "no pass was measured, so it is the first"; break;
+    case VariantReason::nothing_measured:
+        text +=
+            decision.form == 0 ? "no pass was measured, so it is the first" : "as before, since no pass was measured";
+        break;
     }
     for (std::size_t form = 0; form < decision.predicted_ns.size(); ++form) {
         text += (form == 0 ? " (" : ", ") + desc.forms[form] + " " + milliseconds_text(decision.predicted_ns[form]);

@@ -18,7 +18,7 @@ struct VulkanName {
 };
 using VulkanNames = std::span<const VulkanName>;
 
-[[nodiscard]] VulkanNames format_names(); ///< those that format_texel_bytes knows, without VK_FORMAT_
+[[nodiscard]] VulkanNames format_names(); ///< those of formats.cpp, without VK_FORMAT_
 [[nodiscard]] VulkanNames layout_names();
 [[nodiscard]] VulkanNames stage_names();  ///< bits of VkPipelineStageFlags2
 [[nodiscard]] VulkanNames access_names(); ///< bits of VkAccessFlags2

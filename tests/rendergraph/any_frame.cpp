@@ -51,7 +51,7 @@ struct Known {
 
 class Maker {
 public:
-    explicit Maker(std::uint32_t seed) : bits_(seed) {}
+    explicit Maker(std::uint32_t seed) : bits_(seed), ban_bits_(~seed) {}
 
     AnyFrame run() {
         topology_ = any_topology(bits_);
@@ -194,7 +194,10 @@ private:
     }
 
     void declare(PassBuilder& pass, Known& known, Access access, Direction direction, const Box& box) {
+        may_leave_graphics_ = may_leave_graphics_ && !known.is_import;
         if (known.is_image()) {
+            may_leave_graphics_ = may_leave_graphics_ && access != Access::transfer_source &&
+                                  access != Access::transfer_destination; // it may be a blit
             const ImageRange range{box.first_a, box.end_a - box.first_a, box.first_b, box.end_b - box.first_b};
             switch (direction) {
             case Direction::read: pass.reads(known.image, access, range); break;
@@ -268,8 +271,10 @@ private:
     void make_pass(const std::string& name) {
         const PassKind kind = any_kind(bits_);
         PassBuilder pass = graph_.add_pass(name, kind);
-        pass.on_queue(any_wish(bits_, kind));
+        const QueueWish wish = any_wish(bits_, kind);
+        pass.on_queue(wish);
         used_.clear();
+        may_leave_graphics_ = true;
         for (std::uint32_t reads = bits_.below(4); reads > 0; --reads) {
             try_access(pass, kind, bits_.below(static_cast<std::uint32_t>(known_.size())), false);
         }
@@ -280,6 +285,25 @@ private:
         }
         if (used_.size() == before || bits_.below(8) == 0) {
             pass.has_side_effect("random");
+        }
+        if (wish == QueueWish::automatic && (kind == PassKind::compute || kind == PassKind::transfer)) {
+            forbid(pass, kind);
+        }
+    }
+
+    /// Kinds of queue, but never all that can run the pass.
+    void forbid(PassBuilder& pass, PassKind kind) {
+        const bool has_compute = topology_.queues.size() > 1 && topology_.queues[1].kind == QueueKind::compute;
+        switch (ban_bits_.below(8)) {
+        case 0: pass.never_on(QueueKind::compute); break;
+        case 1: pass.never_on(QueueKind::compute).never_on(QueueKind::transfer); break;
+        case 2:
+        case 3:
+            if (has_compute && may_leave_graphics_ && kind == PassKind::compute) {
+                pass.never_on(QueueKind::graphics);
+            }
+            break;
+        default: break;
         }
     }
 
@@ -337,6 +361,8 @@ private:
     }
 
     Bits bits_;
+    Bits ban_bits_;                  ///< apart, so that the rest of a frame is the same without them
+    bool may_leave_graphics_ = true; ///< what the pass at hand does, any compute queue can
     QueueTopology topology_;
     GraphBuilder graph_;
     std::vector<Known> known_;

@@ -20,9 +20,9 @@ struct AnyFrame {
 
 /// 1 to 3 queues of the same or different families; 2D, layered, mipped, 3D, colour, depth and stencil images; buffers
 /// with byte ranges; imports in all states, with semaphores and families; histories of both kinds; concurrent sharing;
-/// variants; graphics, compute, transfer and host passes with queue wishes and side effects; every access of the table;
-/// reads of versions that were overwritten; durations for which overlap often pays. The same seed gives the same frame
-/// everywhere. Compiles without a diagnostic.
+/// variants; graphics, compute, transfer and host passes with queue wishes, forbidden queues and side effects; every
+/// access of the table; reads of versions that were overwritten; durations for which overlap often pays. The same seed
+/// gives the same frame everywhere. Compiles without a diagnostic.
 [[nodiscard]] AnyFrame any_frame(std::uint32_t seed);
 
 /// As compile makes it, with estimated memory.

@@ -50,6 +50,23 @@ TEST(Diagnostics, ReadOfPartsUnwritten) {
                made);
 }
 
+TEST(Diagnostics, ReadOfAnImportWithoutContent) {
+    for (const bool modifies : {false, true}) {
+        GraphBuilder graph;
+        const unsigned made = __LINE__ + 1;
+        Image image = graph.import_image("image", color_image(), left_for_host());
+        PassBuilder pass = graph.add_pass("use", PassKind::compute);
+        pass.has_side_effect("test");
+        const unsigned used = __LINE__ + 1;
+        modifies ? pass.modifies(image, Access::storage_compute) : pass.reads(image, Access::storage_compute);
+        expect_one(mistakes(graph), DiagnosticCode::read_of_unwritten,
+                   std::string("Pass 'use' ") + (modifies ? "modifies" : "reads") +
+                       " 'image', which no pass wrote before; let a pass write it, or import it with the layout it "
+                       "comes in",
+                   used, made);
+    }
+}
+
 TEST(Diagnostics, TwoWriters) {
     GraphBuilder graph;
     Buffer buffer = graph.import_buffer("buffer", {.size_bytes = 16}, {.has_final = true});
@@ -134,6 +151,36 @@ TEST(Diagnostics, GraphicsPassOnComputeQueue) {
     graph.add_pass("draw", PassKind::graphics).has_side_effect("test").on_queue(QueueWish::async_compute);
     expect_one(mistakes(graph), DiagnosticCode::queue_cannot,
                "Pass 'draw' is a graphics pass but asks for another queue; let it be automatic", made, made);
+}
+
+TEST(Diagnostics, APassIsLeftNoQueue) {
+    const auto answer = [](std::vector<QueueKind> forbidden, QueueWish wish, const QueueTopology& topology,
+                           const std::string& message, const ImportDesc& import = {.has_final = true}) {
+        GraphBuilder graph;
+        Buffer buffer = graph.import_buffer("buffer", {.size_bytes = 64}, import);
+        const unsigned made = __LINE__ + 1;
+        PassBuilder pass = graph.add_pass("fill", PassKind::compute);
+        pass.writes(buffer, Access::storage_compute).on_queue(wish);
+        for (const QueueKind kind : forbidden) {
+            pass.never_on(kind);
+        }
+        expect_one(mistakes(graph, topology), DiagnosticCode::queue_cannot, message, made, made);
+    };
+    const std::string none_left =
+        "Pass 'fill' is left no queue but one of the kind that it forbids, graphics; allow it, "
+        "or plan for a queue that can run the pass";
+    const std::vector<QueueKind> graphics = {QueueKind::graphics};
+    answer(graphics, QueueWish::automatic, one_queue(), none_left);
+    answer(graphics, QueueWish::async_compute, one_queue(), none_left);
+    answer({QueueKind::graphics, QueueKind::compute}, QueueWish::automatic, two_queues(),
+           none_left + ", since an import that it touches is not shared between families");
+    answer(graphics, QueueWish::automatic, two_queues(),
+           none_left + ", since only the first queue is ordered with the host's use of an import that it touches",
+           {.initial_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, .has_final = true});
+    answer(graphics, QueueWish::graphics, two_queues(),
+           "Pass 'fill' asks for a queue of the kind that it forbids, graphics; choose one");
+    answer({QueueKind::compute}, QueueWish::async_compute, two_queues(),
+           "Pass 'fill' asks for a queue of the kind that it forbids, compute; choose one");
 }
 
 TEST(Diagnostics, AttachmentsDiffer) {
@@ -267,6 +314,34 @@ TEST(Diagnostics, TooManyMips) {
     graph.add_pass("fill", PassKind::compute).writes(image, Access::storage_compute).has_side_effect("test");
     expect_one(mistakes(graph), DiagnosticCode::bad_description, "Resource 'image' has 6 mips, but its extent allows 5",
                made, made);
+}
+
+TEST(Diagnostics, MoreBytesThanAnyDeviceHas) {
+    GraphBuilder graph;
+    Buffer small = graph.create_buffer("small", {.size_bytes = 64});
+    const unsigned made = __LINE__ + 1;
+    Buffer large = graph.create_buffer("large", {.size_bytes = VkDeviceSize{1} << 63U});
+    (void)graph.create_buffer("larger", {.size_bytes = ~VkDeviceSize{0}}); // said once
+    graph.add_pass("fill", PassKind::compute)
+        .writes(small, Access::storage_compute)
+        .writes(large, Access::storage_compute)
+        .has_side_effect("test");
+    expect_one(mistakes(graph), DiagnosticCode::bad_description,
+               "Resource 'large' is more than the frame can have with what is declared before it, 1125899906842624 "
+               "bytes; make it smaller",
+               made, made);
+}
+
+TEST(Diagnostics, FormatWithoutSize) {
+    GraphBuilder graph;
+    const unsigned made = __LINE__ + 1;
+    Image image = graph.create_image("image", {.format = VK_FORMAT_G8_B8R8_2PLANE_420_UNORM, .extent = {8, 8, 1}});
+    graph.add_pass("fill", PassKind::compute).writes(image, Access::storage_compute).has_side_effect("test");
+    expect_one(
+        mistakes(graph), DiagnosticCode::bad_description,
+        "Resource 'image' has a format of which no size is known; ask the driver what memory it needs, or choose "
+        "another format",
+        made, made);
 }
 
 TEST(Diagnostics, NoGraphicsQueue) {

@@ -212,9 +212,9 @@ TEST(PlanJson, WhatAPlanCannotSayIsRefused) {
     EXPECT_EQ(answer("/culled_passes/0/because_of", null), outside("culled_passes[0].because_of"));
     EXPECT_EQ(answer("/placements/1/heap", null), outside("placements[1].heap"));
     EXPECT_EQ(answer("/placements/1/size_bytes", null),
-              needs("a whole number up to 1125899906842624", "placements[1].size_bytes"));
+              needs("a whole number up to 2251799813685248", "placements[1].size_bytes"));
     EXPECT_EQ(answer("/placements/1/offset_bytes", ~std::uint64_t{0}),
-              needs("a whole number up to 1125899906842624", "placements[1].offset_bytes"));
+              needs("a whole number up to 2251799813685248", "placements[1].offset_bytes"));
     EXPECT_EQ(answer("/decision/serial_ns", std::numeric_limits<std::int64_t>::min()),
               needs("a whole number up to 1152921504606846976", "decision.serial_ns"));
     EXPECT_EQ(answer("/dependencies/0/new_layout", 0x80000000U), needs("a name", "dependencies[0].new_layout"));

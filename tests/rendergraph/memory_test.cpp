@@ -3,10 +3,12 @@
 #include <cstdio>
 #include <random>
 
+#include "rendergraph/limits.hpp"
 #include "rendergraph/memory_types.hpp"
 #include "rendergraph/plan_cache.hpp"
 #include "rendergraph/refine.hpp"
 #include "rendergraph/verify.hpp"
+#include "rendergraph/vulkan_names.hpp"
 #include "tests/rendergraph/frames.hpp"
 
 namespace tyndall::rg::test {
@@ -33,6 +35,32 @@ DeclaredGraph chain_of(std::uint32_t length) {
         .reads(previous, Access::storage_compute)
         .writes(out, Access::storage_compute);
     return graph.finish();
+}
+
+TEST(Memory, EstimatesKnowEveryFormat) {
+    const auto bytes_of = [](const ImageDesc& image) {
+        GraphDesc graph;
+        graph.resources.push_back({.image = image});
+        return estimate_memory(graph).of_resource[0].size_bytes;
+    };
+    for (const VulkanName& format : format_names()) {
+        EXPECT_NE(bytes_of({.format = static_cast<VkFormat>(format.value), .extent = {8, 8, 1}}), 0U) << format.name;
+    }
+    const VkExtent3D extent = {1024, 512, 1};
+    const VkDeviceSize texels = VkDeviceSize{1024} * 512;
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_R8_SNORM, .extent = extent}), texels);
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_R5G6B5_UNORM_PACK16, .extent = extent}), texels * 2);
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_R64G64B64A64_SFLOAT, .extent = extent}), texels * 32);
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_BC1_RGB_UNORM_BLOCK, .extent = extent}), texels / 2);
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_BC7_SRGB_BLOCK, .extent = extent, .layers = 3}), texels * 3);
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_ASTC_8x8_UNORM_BLOCK, .extent = extent}), texels / 4);
+    // 103 x 52 blocks of 10 x 10 texels, those at two edges in part.
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_ASTC_10x10_UNORM_BLOCK, .extent = extent}), VkDeviceSize{21} * 4096);
+    EXPECT_EQ(bytes_of({.format = VK_FORMAT_BC7_UNORM_BLOCK, .extent = {128, 128, 1}, .mips = 8}),
+              VkDeviceSize{6} * 4096); // the last mips have a whole block each
+    // More than fits into the number.
+    EXPECT_GT(bytes_of({.format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {~0U, ~0U, ~0U}, .mips = 32, .layers = ~0U}),
+              most_bytes);
 }
 
 TEST(Memory, AChainNeedsTwoBuffersAtATime) {

@@ -60,8 +60,9 @@ void expect_all_reasons(const GraphDesc& graph, const Plan& plan) {
     std::set<std::uint32_t> passes;
     for (const PlannedPass& pass : plan.passes) {
         passes.insert(pass.pass);
-        expect_reason(why_kept(graph, pass) + ".");
+        expect_reason(why_kept(graph, pass));
         expect_reason(why_queue(pass));
+        EXPECT_FALSE(pass.queue_reason == QueueReason::default_graphics && pass.queue != 0);
     }
     for (const CulledPass& pass : plan.culled_passes) {
         passes.insert(pass.pass);
@@ -136,6 +137,9 @@ TEST(Reasons, NothingInAPlanLacksOne) {
         const auto plan = compile(made.graph, made.topology, estimate_memory(made.graph));
         ASSERT_TRUE(plan);
         expect_all_reasons(made.graph, *plan);
+        const auto by_costs = plan_of(made);
+        ASSERT_TRUE(by_costs);
+        expect_all_reasons(made.graph, *by_costs);
         waits += plan->statistics.wait_count;
         for (const Placement& placement : plan->placements) {
             shared += placement.shares_with != none ? 1 : 0;
@@ -143,6 +147,13 @@ TEST(Reasons, NothingInAPlanLacksOne) {
     }
     EXPECT_GT(waits, 0U);
     EXPECT_GT(shared, 0U);
+}
+
+TEST(Reasons, OfASideEffectWithoutAName) {
+    GraphBuilder graph;
+    graph.add_pass("print", PassKind::compute).has_side_effect("");
+    const DeclaredGraph declared = graph.finish();
+    expect_all_reasons(declared.desc, compiled(declared.desc, one_queue()));
 }
 
 TEST(Reasons, OfTheCorpusAndOfTheSampleFrames) {

@@ -1,6 +1,7 @@
 // Queues chosen by durations: when overlap pays, when it does not, and that a plan does not flutter.
 #include <iostream>
 
+#include "rendergraph/plan_text.hpp"
 #include "rendergraph/simulate.hpp"
 #include "rendergraph/verify.hpp"
 #include "tests/rendergraph/any_frame.hpp"
@@ -104,6 +105,19 @@ TEST_F(Scheduling, WhyItIsSerial) {
     const Plan plan = compiled_with(nowhere.desc, worth_it);
     EXPECT_EQ(plan.decision.reason, DecisionReason::nothing_async_capable);
     EXPECT_EQ(plan.passes[0].queue_reason, QueueReason::forbidden);
+}
+
+TEST_F(Scheduling, APassThatForbidsGraphicsRunsElsewhere) {
+    GraphDesc graph = graph_.finish().desc;
+    graph.passes[0].forbidden_queues = queue_bit(QueueKind::graphics);
+    const Plan plan = compiled_with(graph, {});
+    EXPECT_EQ(plan.passes[0].queue, 1U);
+    EXPECT_EQ(plan.passes[0].queue_reason, QueueReason::forbidden);
+    EXPECT_EQ(why_queue(plan.passes[0]), "other queues that could are forbidden");
+    // A switch is for looking for faults: it wins.
+    const Plan serial = compiled_with(graph, {}, nullptr, two_queues(), {.async = false});
+    EXPECT_EQ(serial.passes[0].queue, 0U);
+    EXPECT_EQ(serial.passes[0].queue_reason, QueueReason::async_switched_off);
 }
 
 TEST_F(Scheduling, SlowdownOfTwoLeavesNothingToGain) {

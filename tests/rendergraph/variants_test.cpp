@@ -87,7 +87,7 @@ TEST_F(Variants, OneQueueKeepsTheFormWithLessWork) {
                                      [](const CulledPass& pass) { return pass.pass == light_all; });
     ASSERT_NE(culled, plan.culled_passes.end());
     EXPECT_EQ(culled->reason, CullReason::other_form);
-    EXPECT_EQ(why_culled(declared_.desc, *culled), "another form of 'froxel culling' makes the frame shorter");
+    EXPECT_EQ(why_culled(declared_.desc, *culled), "another form of 'froxel culling' is kept");
 }
 
 TEST_F(Variants, TwoQueuesKeepTheFormThatOverlaps) {

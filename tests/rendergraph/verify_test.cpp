@@ -37,6 +37,11 @@ TEST(Verify, RandomFramesAreProved) {
         ASSERT_TRUE(plan.has_value()) << "seed " << seed << "\n" << to_text(plan.error()) << small_failure(frame);
         ASSERT_EQ(text(verify(frame.graph, *plan)), "") << "seed " << seed << "\n" << small_failure(frame);
         planned += static_cast<std::uint32_t>(plan->passes.size());
+        for (const PlannedPass& pass : plan->passes) {
+            const QueueKind kind = frame.topology.queues[pass.queue].kind;
+            const PassDesc& desc = frame.graph.passes[pass.pass];
+            ASSERT_EQ(desc.forbidden_queues & queue_bit(kind), 0) << "seed " << seed << ": " << desc.name;
+        }
         const CompileOptions switches = any_switches(seed);
         const auto switched = plan_of(frame, switches);
         ASSERT_TRUE(switched.has_value()) << "seed " << seed << "\n" << to_text(switched.error());
@@ -79,6 +84,9 @@ TEST(Verify, RandomFramesSayEverything) {
         for (const PlannedPass& pass : plan->passes) {
             here.insert(std::string(name_of(frame.graph.passes[pass.pass].kind)) + " pass");
             here.insert("queue " + std::to_string(pass.queue));
+            if (pass.queue_reason == QueueReason::forbidden) {
+                here.insert(pass.queue == 0 ? "kept on graphics by a ban" : "driven off graphics by a ban");
+            }
         }
         for (const Dependency& d : plan->dependencies) {
             here.insert(std::string(name_of(d.hazard)));
@@ -118,6 +126,8 @@ TEST(Verify, RandomFramesSayEverything) {
                              "queue 0",
                              "queue 1",
                              "queue 2",
+                             "kept on graphics by a ban",
+                             "driven off graphics by a ban",
                              "ownership transfer",
                              "form 0",
                              "form 1",
