@@ -116,13 +116,13 @@ tl::expected<void, Error> set_density(Fog& fog, const DensityPicture& picture, s
     return {};
 }
 
-tl::expected<Fog, Error> parse_fog_json(std::string_view given) {
-    const std::string text = quote_words_for_no_number(given);
+tl::expected<Fog, Error> parse_fog_json(std::string_view text) {
+    const std::string quoted = quote_words_for_no_number(text);
     SyntaxCheck syntax;
-    if (!Json::sax_parse(text.begin(), text.end(), &syntax)) {
+    if (!Json::sax_parse(quoted.begin(), quoted.end(), &syntax)) {
         return tl::unexpected(syntax.error().value_or(Error{"The fog file is not valid JSON."}));
     }
-    const Json document = Json::parse(text.begin(), text.end(), nullptr, false);
+    const Json document = Json::parse(quoted.begin(), quoted.end(), nullptr, false);
     Fog fog;
     std::optional<Error> error;
     {

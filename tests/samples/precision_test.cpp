@@ -176,6 +176,28 @@ TEST(Precision, SlabIsExactAndTheFilesHoldWhatIsPrinted) {
     std::filesystem::remove_all(folder);
 }
 
+/// docs/measurements.md, "Fog against its reference": what every change has to keep of it, with the default
+/// configuration.
+TEST(Precision, TheDefaultConfigurationKeepsItsErrors) {
+    const std::array<std::pair<const char*, double>, 3> bounds{
+        {{"slab", 0.02}, {"height_fog", 0.02}, {"point_light", 0.05}}};
+    for (const auto& [scene, bound] : bounds) {
+        const ToolRun run = run_tool({"precision", "--scene", scene, "--size", "160x90", "--frames", "2", "--json"});
+        ASSERT_EQ(run.exit_code, 0) << run.errors;
+        const nlohmann::json printed = nlohmann::json::parse(run.output);
+        int judged = 0;
+        for (const nlohmann::json& row : printed["rows"]) {
+            if (row["frame"] == 1 && row["physics"] == "full") {
+                ++judged;
+                EXPECT_LE(row["relative_l2"], bound) << row;
+                EXPECT_LE(std::abs(row["bias"].get<double>()), 0.005) << row;
+                EXPECT_LT(row["reference_error"].get<double>(), 0.01 * row["relative_l2"].get<double>()) << row;
+            }
+        }
+        EXPECT_EQ(judged, 1) << scene;
+    }
+}
+
 TEST(Precision, ChoosesAndRunsTheChoice) {
     const ToolRun run =
         run_tool({"precision", "--scene", "slab", "--size", "32x18", "--frames", "2", "--slices", "8,64",
