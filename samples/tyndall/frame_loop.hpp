@@ -78,6 +78,7 @@ private:
                                                                  rg::Image image, engine::Buffer& buffer);
     void take_images(const FrameWishes& wishes);
     [[nodiscard]] tl::expected<void, engine::Error> make_plan();
+    [[nodiscard]] tl::expected<void, engine::Error> prove_plan();
 
     const engine::Device* device_;
     std::optional<engine::PipelineCache> cache_;
@@ -97,6 +98,8 @@ private:
     std::uint64_t refined_hash_ = 0;  ///< Plan::passes_hash when the last search began
     std::uint64_t refined_frame_ = 0; ///< and the frame
     rg::Plan calibration_plan_;
+    rg::GraphDesc proved_graph_; ///< of the last plan that was proved
+    rg::Plan proved_plan_;       ///< empty before the first
     rg::Durations durations_;
     std::uint64_t frame_index_ = 0;
     std::uint64_t submitted_ = 0;
