@@ -1,62 +1,13 @@
 // An unchanged frame costs a look-up: the same plan, no heap allocation; any change that decides a plan is noticed.
-#include <atomic>
-#include <cstdlib>
 #include <functional>
-#include <new>
 #include <set>
 #include <utility>
 
 #include "rendergraph/json.hpp"
 #include "rendergraph/plan_cache.hpp"
 #include "tests/rendergraph/any_frame.hpp"
+#include "tests/rendergraph/counted_allocations.hpp"
 #include "tests/rendergraph/frames.hpp"
-
-namespace {
-
-std::atomic<std::size_t> allocations = 0;
-
-void* counted(std::size_t size) {
-    ++allocations;
-    void* memory = std::malloc(size == 0 ? 1 : size);
-    if (memory == nullptr) {
-        std::abort();
-    }
-    return memory;
-}
-
-} // namespace
-
-// Every heap allocation of this program goes through these.
-void* operator new(std::size_t size) {
-    return counted(size);
-}
-void* operator new[](std::size_t size) {
-    return counted(size);
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-    return counted(size);
-}
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-    return counted(size);
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, const std::nothrow_t&) noexcept {
-    std::free(memory);
-}
-void operator delete[](void* memory, const std::nothrow_t&) noexcept {
-    std::free(memory);
-}
 
 namespace tyndall::rg::test {
 namespace {
@@ -97,9 +48,9 @@ TEST(PlanCache, UnchangedFrameIsReturnedWithoutHeapAllocation) {
         const auto first = cache.compile(frame.graph, frame.topology, memory, {}, frame.costs);
         ASSERT_TRUE(first.has_value()) << "seed " << seed;
         const AnyFrame again = any_frame(seed); // other strings, other addresses, the same content
-        const std::size_t before = allocations;
+        const std::size_t before = allocation_count();
         const auto second = cache.compile(again.graph, again.topology, memory, {}, again.costs);
-        const std::size_t after = allocations;
+        const std::size_t after = allocation_count();
         EXPECT_EQ(after - before, 0U) << "seed " << seed;
         ASSERT_TRUE(second.has_value());
         EXPECT_EQ(*first, *second);
@@ -110,9 +61,9 @@ TEST(PlanCache, UnchangedFrameIsReturnedWithoutHeapAllocation) {
 TEST(PlanCache, AllocationsAreCounted) {
     const Inputs in = inputs();
     PlanCache cache;
-    const std::size_t before = allocations;
+    const std::size_t before = allocation_count();
     ASSERT_TRUE(cache.compile(in.graph, in.topology, in.memory).has_value());
-    EXPECT_GT(allocations - before, 0U);
+    EXPECT_GT(allocation_count() - before, 0U);
 }
 
 TEST(PlanCache, GivesThePlanThatCompileGives) {

@@ -35,7 +35,9 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_command_buffers(VkDevice, const VkComman
     return result;
 }
 VKAPI_ATTR VkResult VKAPI_CALL begin_command_buffer(VkCommandBuffer cmd, const VkCommandBufferBeginInfo*) {
-    RecordingDevice::current().command_buffers[cmd] = {};
+    if (RecordingDevice::current().remembers) {
+        RecordingDevice::current().command_buffers[cmd] = {};
+    }
     return VK_SUCCESS;
 }
 VKAPI_ATTR VkResult VKAPI_CALL end_command_buffer(VkCommandBuffer) {
@@ -45,6 +47,9 @@ VKAPI_ATTR VkResult VKAPI_CALL reset_command_pool(VkDevice, VkCommandPool, VkCom
     return VK_SUCCESS;
 }
 VKAPI_ATTR void VKAPI_CALL pipeline_barrier(VkCommandBuffer cmd, const VkDependencyInfo* info) {
+    if (!RecordingDevice::current().remembers) {
+        return;
+    }
     RecordedCommands& commands = RecordingDevice::current().command_buffers[cmd];
     commands.memory_barriers.emplace_back(info->pMemoryBarriers, info->pMemoryBarriers + info->memoryBarrierCount);
     commands.image_barriers.emplace_back(info->pImageMemoryBarriers,
@@ -53,8 +58,10 @@ VKAPI_ATTR void VKAPI_CALL pipeline_barrier(VkCommandBuffer cmd, const VkDepende
                                           info->pBufferMemoryBarriers + info->bufferMemoryBarrierCount);
 }
 VKAPI_ATTR void VKAPI_CALL begin_rendering(VkCommandBuffer cmd, const VkRenderingInfo* info) {
-    RecordingDevice::current().command_buffers[cmd].color_attachments.emplace_back(
-        info->pColorAttachments, info->pColorAttachments + info->colorAttachmentCount);
+    if (RecordingDevice::current().remembers) {
+        RecordingDevice::current().command_buffers[cmd].color_attachments.emplace_back(
+            info->pColorAttachments, info->pColorAttachments + info->colorAttachmentCount);
+    }
 }
 VKAPI_ATTR void VKAPI_CALL end_rendering(VkCommandBuffer) {}
 VKAPI_ATTR void VKAPI_CALL set_viewport(VkCommandBuffer, std::uint32_t, std::uint32_t, const VkViewport*) {}
@@ -64,6 +71,9 @@ VKAPI_ATTR VkResult VKAPI_CALL queue_submit(VkQueue queue, std::uint32_t count, 
     RecordingDevice& device = RecordingDevice::current();
     if (device.submit_result != VK_SUCCESS) {
         return device.submit_result;
+    }
+    if (!device.remembers) {
+        return VK_SUCCESS;
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const VkSubmitInfo2& submit = submits[i];

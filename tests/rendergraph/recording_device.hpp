@@ -47,6 +47,7 @@ public:
     std::int64_t creations = 0; ///< calls that make something
     std::int64_t fail_at = -1;  ///< the creation that runs out of memory
     VkResult submit_result = VK_SUCCESS;
+    bool remembers = true; ///< false: it allocates nothing, and a frame's own allocations can be counted
 
     // For the functions.
     [[nodiscard]] static RecordingDevice& current();

@@ -1,0 +1,109 @@
+// A steady frame of the executor allocates nothing on the heap. The device does nothing, so that no driver's
+// allocations are among those that are counted.
+#include <bit>
+
+#include "tests/rendergraph/counted_allocations.hpp"
+#include "tests/rendergraph/frames.hpp"
+#include "tests/rendergraph/random_graph.hpp"
+#include "tests/rendergraph/recording_device.hpp"
+
+namespace tyndall::rg::test {
+namespace {
+
+constexpr std::uint32_t frames_to_settle = 10; ///< slots, both copies of histories, unused objects given back
+constexpr std::uint32_t frames_counted = 10;
+
+/// Made-up handles for every import.
+std::vector<ImportBinding> bindings_of(const GraphDesc& graph) {
+    std::vector<ImportBinding> out;
+    for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
+        if (graph.resources[resource].lifetime == ResourceLifetime::imported) {
+            const std::uint64_t handle = 0x3000 + resource;
+            out.push_back({.resource = resource,
+                           .image = std::bit_cast<VkImage>(handle),
+                           .buffer = std::bit_cast<VkBuffer>(handle),
+                           .wait_semaphore = std::bit_cast<VkSemaphore>(handle),
+                           .signal_semaphore = std::bit_cast<VkSemaphore>(handle)});
+        }
+    }
+    return out;
+}
+
+class Allocations : public testing::Test {
+protected:
+    Allocations() { device_.remembers = false; }
+
+    /// Of the frames after those in which it settles.
+    [[nodiscard]] std::size_t in_steady_frames(ExecutorInfo info, const DeclaredGraph& graph,
+                                               const QueueTopology* topology = nullptr) {
+        tl::expected<Executor, ExecuteError> executor = Executor::create(std::move(info));
+        EXPECT_TRUE(executor.has_value());
+        const auto plan = compile(graph.desc, topology != nullptr ? *topology : executor->topology(),
+                                  executor->memory_requirements(graph.desc));
+        EXPECT_TRUE(plan.has_value());
+        const std::vector<ImportBinding> imports = bindings_of(graph.desc);
+        std::size_t before = 0;
+        for (std::uint32_t frame = 0; frame < frames_to_settle + frames_counted; ++frame) {
+            if (frame == frames_to_settle) {
+                before = allocation_count();
+            }
+            const auto submitted = executor->submit(graph.desc, *plan, graph.callbacks, imports);
+            if (!submitted) {
+                ADD_FAILURE() << submitted.error().message;
+                return 0;
+            }
+        }
+        return allocation_count() - before;
+    }
+    [[nodiscard]] ExecutorInfo any_queues() const {
+        return device_.info({QueueKind::graphics, QueueKind::compute, QueueKind::transfer});
+    }
+
+    RecordingDevice device_;
+};
+
+TEST_F(Allocations, ASteadyFrameMakesNoneWhateverItDeclares) {
+    for (std::uint32_t seed = 0; seed < 100; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const DeclaredGraph graph = random_frame(seed);
+        const QueueTopology topology = random_topology(seed);
+        ASSERT_EQ(in_steady_frames(any_queues(), graph, &topology), 0U);
+        ExecutorInfo poisoned = any_queues();
+        poisoned.poison_transients = true;
+        ASSERT_EQ(in_steady_frames(std::move(poisoned), graph, &topology), 0U);
+    }
+}
+
+TEST_F(Allocations, NorDoesWhatPassesAskFor) {
+    GraphBuilder graph;
+    Image sum = graph.create_image("sum", color_image());
+    const Image before = graph.history_of(sum);
+    Buffer numbers = graph.create_buffer("numbers", {.size_bytes = 1024});
+    Image output = graph.import_image("output", color_image(), left_for_host());
+    graph.add_pass("fill", PassKind::transfer)
+        .writes(numbers, Access::transfer_destination)
+        .executes([=](PassContext& ctx) { static_cast<void>(ctx.buffer(numbers)); });
+    std::uint32_t called = 0;
+    graph.add_pass("accumulate", PassKind::compute)
+        .reads(before, Access::sampled_compute)
+        .reads(numbers, Access::storage_compute)
+        .writes(sum, Access::storage_compute)
+        .executes([=, &called](PassContext& ctx) {
+            called += ctx.history_valid(before) ? 1 : 0;
+            ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, VK_NULL_HANDLE, 0,
+                     std::array{ctx.sampled(0, before, VK_NULL_HANDLE), ctx.storage(1, sum), ctx.storage(2, numbers)});
+        });
+    graph.add_pass("draw", PassKind::graphics)
+        .reads(sum, Access::sampled_fragment)
+        .writes(output, Access::color_attachment, {.clear = clear_color(0, 0, 0, 1)})
+        .executes([=](PassContext& ctx) {
+            static_cast<void>(ctx.view(sum));
+            static_cast<void>(ctx.layout(sum));
+            static_cast<void>(ctx.pass_name());
+        });
+    EXPECT_EQ(in_steady_frames(any_queues(), graph.finish()), 0U);
+    EXPECT_EQ(called, frames_to_settle + frames_counted - 1);
+}
+
+} // namespace
+} // namespace tyndall::rg::test
