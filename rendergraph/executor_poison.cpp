@@ -1,11 +1,12 @@
 // The debug switch 'poison transients': what a pass is about to write for the first time is filled with a pattern, so
 // that a pass that reads what nobody wrote shows it. NaN in floating-point colours and in buffers, which hold
-// 0xFFFFFFFF; the largest number in integer texels; magenta in all other colours; depth 0.5 and stencil 0xA5.
+// 0xFFFFFFFF; all bits set in integer texels; magenta in all other colours; depth 0.5 and stencil 0xA5.
 // Full barriers stand around the fills and hide what a plan's own would let race: races are looked for without it.
-#include <algorithm>
 #include <limits>
+#include <string_view>
 
 #include "rendergraph/executor_state.hpp"
+#include "rendergraph/vulkan_names.hpp"
 
 namespace tyndall::rg {
 namespace {
@@ -16,30 +17,34 @@ constexpr std::uint32_t buffer_pattern = 0xFFFFFFFF;
 constexpr VkClearDepthStencilValue depth_pattern = {0.5F, 0xA5};
 constexpr VkDeviceSize fill_unit_bytes = 4; // vkCmdFillBuffer's
 
-constexpr VkClearColorValue integers(std::uint32_t largest) {
+constexpr VkClearColorValue floats(float red, float green, float blue, float alpha) {
+    return {.float32 = {red, green, blue, alpha}};
+}
+/// Numbers that a channel cannot hold would clear to anything.
+VkClearColorValue largest_integers(std::string_view format) {
+    if (format.starts_with("A2")) {
+        return {.uint32 = {0x3FF, 0x3FF, 0x3FF, 3}};
+    }
+    const std::uint32_t largest = format.find("R8") != std::string_view::npos    ? 0xFF
+                                  : format.find("R16") != std::string_view::npos ? 0xFFFF
+                                                                                 : 0xFFFFFFFF;
     return {.uint32 = {largest, largest, largest, largest}};
 }
 
 VkClearColorValue color_pattern(VkFormat format) {
-    switch (format) {
-    case VK_FORMAT_R16_SFLOAT:
-    case VK_FORMAT_R16G16_SFLOAT:
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-    case VK_FORMAT_R32_SFLOAT:
-    case VK_FORMAT_R32G32_SFLOAT:
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-    case VK_FORMAT_B10G11R11_UFLOAT_PACK32: {
+    const std::string_view name = name_in(format_names(), static_cast<std::uint64_t>(format)).value_or("");
+    const auto says = [name](std::string_view part) { return name.find(part) != std::string_view::npos; };
+    if (says("UINT")) {
+        return largest_integers(name);
+    }
+    if (says("SINT")) {
+        return {.int32 = {-1, -1, -1, -1}};
+    }
+    if (says("FLOAT") && format != VK_FORMAT_E5B9G9R9_UFLOAT_PACK32) { // a shared exponent leaves no room for it
         constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-        return {.float32 = {nan, nan, nan, nan}};
+        return floats(nan, nan, nan, nan);
     }
-    case VK_FORMAT_R8_UINT:
-    case VK_FORMAT_R8G8B8A8_UINT: return integers(0xFF);
-    case VK_FORMAT_R16_UINT: return integers(0xFFFF);
-    case VK_FORMAT_R32_UINT:
-    case VK_FORMAT_R32G32_UINT:
-    case VK_FORMAT_R32G32B32A32_UINT: return integers(0xFFFFFFFF);
-    default: return {.float32 = {1.0F, 0.0F, 1.0F, 1.0F}};
-    }
+    return floats(1.0F, 0.0F, 1.0F, 1.0F);
 }
 
 /// Half open.
@@ -69,7 +74,7 @@ VkImageMemoryBarrier2 transition(VkImage image, const VkImageSubresourceRange& r
 } // namespace
 
 bool can_poison(const ResourceDesc& desc) {
-    // Formats that the graph does not know may be compressed, which cannot be cleared.
+    // Formats without texels of a known size are compressed, and cannot be cleared, or are not known.
     return desc.lifetime == ResourceLifetime::transient &&
            (desc.kind == ResourceKind::buffer ||
             (format_texel_bytes(desc.image.format) > 0 &&

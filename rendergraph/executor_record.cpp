@@ -1,7 +1,9 @@
 // Recording: barriers, dynamic rendering, labels and timestamps around the callbacks of the passes.
 #include <algorithm>
+#include <string_view>
 
 #include "rendergraph/executor_state.hpp"
+#include "rendergraph/vulkan_names.hpp"
 
 namespace tyndall::rg {
 namespace {
@@ -11,9 +13,8 @@ constexpr VkExtent2D at_mip(const VkExtent3D& extent, std::uint32_t mip) {
 }
 
 bool has_integer_texels(VkFormat format) {
-    return format == VK_FORMAT_R8_UINT || format == VK_FORMAT_R16_UINT || format == VK_FORMAT_R32_UINT ||
-           format == VK_FORMAT_R8G8B8A8_UINT || format == VK_FORMAT_R32G32_UINT ||
-           format == VK_FORMAT_R32G32B32A32_UINT;
+    const std::string_view name = name_in(format_names(), static_cast<std::uint64_t>(format)).value_or("");
+    return name.find("UINT") != std::string_view::npos || name.find("SINT") != std::string_view::npos;
 }
 
 } // namespace

@@ -40,7 +40,10 @@ protected:
         EXPECT_TRUE(executor.has_value());
         const auto plan = compile(graph.desc, topology != nullptr ? *topology : executor->topology(),
                                   executor->memory_requirements(graph.desc));
-        EXPECT_TRUE(plan.has_value());
+        if (!plan) {
+            ADD_FAILURE() << to_text(plan.error());
+            return 0;
+        }
         const std::vector<ImportBinding> imports = bindings_of(graph.desc);
         std::size_t before = 0;
         for (std::uint32_t frame = 0; frame < frames_to_settle + frames_counted; ++frame) {

@@ -62,9 +62,10 @@ TEST_F(Poison, HalfAnImageThatNobodyWroteIsNan) {
         run_bound(graph.finish());
         const std::span<Texel> texels = result.as<Texel>();
         for (std::uint32_t i = 0; i < texels.size(); ++i) {
-            if (i < half.width * half.height) {
+            const std::uint32_t row = i / whole.width;
+            if (row < half.height) {
                 ASSERT_EQ(texels[i],
-                          (Texel{static_cast<float>(i % 16) + 2.0F, static_cast<float>(i / 16) + 2.0F, 5.0F, 6.0F}));
+                          (Texel{static_cast<float>(i % 16) + 2.0F, static_cast<float>(row) + 2.0F, 5.0F, 6.0F}));
             } else {
                 ASSERT_TRUE(std::isnan(texels[i][0]) && std::isnan(texels[i][3])) << "texel " << i;
             }
@@ -136,6 +137,10 @@ TEST_F(Poison, EveryKindOfFormatHasAPattern) {
     };
     EXPECT_EQ(texel_of_unwritten(VK_FORMAT_R8G8B8A8_UNORM, PassKind::compute, Access::storage_compute), 0xFFFF00FFU);
     EXPECT_EQ(texel_of_unwritten(VK_FORMAT_R8G8B8A8_UINT, PassKind::compute, Access::storage_compute), 0xFFFFFFFFU);
+    EXPECT_EQ(texel_of_unwritten(VK_FORMAT_R32_SINT, PassKind::compute, Access::storage_compute), 0xFFFFFFFFU);
+    EXPECT_EQ(texel_of_unwritten(VK_FORMAT_R16G16_UINT, PassKind::transfer, Access::transfer_destination), 0xFFFFFFFFU);
+    EXPECT_EQ(texel_of_unwritten(VK_FORMAT_A2B10G10R10_UINT_PACK32, PassKind::transfer, Access::transfer_destination),
+              0xFFFFFFFFU);
     EXPECT_EQ(texel_of_unwritten(VK_FORMAT_R32_UINT, PassKind::compute, Access::storage_compute), 0xFFFFFFFFU);
     EXPECT_TRUE(
         std::isnan(as_float(texel_of_unwritten(VK_FORMAT_R32_SFLOAT, PassKind::compute, Access::storage_compute))));
