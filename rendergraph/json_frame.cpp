@@ -2,6 +2,7 @@
 // In: text. Out: the frame, or all its mistakes. Invariant: what is returned can be given to compile as it is: indices
 // are sound, versions are without gaps. O(accesses).
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "rendergraph/compile.hpp"
@@ -83,7 +84,7 @@ private:
             return;
         }
         for (const Json& value : *list) {
-            if (value.is_string()) {
+            if (json::is_text(value)) {
                 graph_->points.push_back(value.get<std::string>());
             } else {
                 json::complain(mistakes_, {"The frame"}, "needs names in 'points'");
@@ -101,7 +102,11 @@ private:
             reader.text("name", variant.name, true);
             if (const Json* forms = reader.array("forms"); forms != nullptr) {
                 for (const Json& form : *forms) {
-                    variant.forms.push_back(form.is_string() ? form.get<std::string>() : form.dump());
+                    if (json::is_text(form)) {
+                        variant.forms.push_back(form.get<std::string>());
+                    } else {
+                        reader.complain("needs names in 'forms'");
+                    }
                 }
             }
             if (variant.forms.empty()) {
@@ -251,33 +256,55 @@ private:
         count = values->size() == 2 ? static_cast<T>((*values)[1]) : std::numeric_limits<T>::max();
     }
 
-    static void read_clear(ObjectReader& reader, const Json& value, VkFormat format, VkClearValue& clear) {
+    void read_clear(ObjectReader& reader, const Json& value, VkFormat format, VkClearValue& clear) {
         if (is_depth_or_stencil(format)) {
-            const auto number = [&](const char* key) {
-                const auto at = value.is_object() ? value.find(key) : value.end();
-                return value.is_object() && at != value.end() && at->is_number() ? at->get<double>() : 0.0;
-            };
             if (!value.is_object()) {
                 reader.complain("clears a depth image: 'clear' must be {\"depth\": ..., \"stencil\": ...}");
                 return;
             }
-            clear.depthStencil = {static_cast<float>(number("depth")), static_cast<std::uint32_t>(number("stencil"))};
+            Subject subject = reader.subject();
+            subject.text += " clear,";
+            ObjectReader one(value, std::move(subject), mistakes_);
+            one.real("depth", clear.depthStencil.depth, 0.0, 1.0);
+            one.number("stencil", clear.depthStencil.stencil);
+            one.finish();
             return;
         }
-        const bool four_numbers = value.is_array() && value.size() == 4 &&
-                                  std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); });
-        if (!four_numbers) {
-            reader.complain("clears a colour image: 'clear' must be four numbers");
+        const json::ClearNumbers numbers = json::clear_numbers_of(format);
+        const bool four =
+            value.is_array() && value.size() == 4 &&
+            std::all_of(value.begin(), value.end(), [&](const Json& v) { return is_clear_number(v, numbers); });
+        if (!four) {
+            const char* const kind = numbers == json::ClearNumbers::unsigned_whole ? " whole numbers from 0"
+                                     : numbers == json::ClearNumbers::signed_whole ? " whole numbers"
+                                                                                   : " numbers";
+            reader.complain(std::string("clears a colour image: 'clear' must be four") + kind +
+                            " that fit into 32 bits");
             return;
         }
-        const std::string_view name = name_in(format_names(), static_cast<std::uint64_t>(format)).value_or("");
         for (std::size_t i = 0; i < 4; ++i) {
-            if (name.find("_UINT") != std::string_view::npos) {
-                clear.color.uint32[i] = value[i].get<std::uint32_t>();
-            } else {
-                clear.color.float32[i] = value[i].get<float>();
+            switch (numbers) {
+            case json::ClearNumbers::unsigned_whole: clear.color.uint32[i] = value[i].get<std::uint32_t>(); break;
+            case json::ClearNumbers::signed_whole: clear.color.int32[i] = value[i].get<std::int32_t>(); break;
+            case json::ClearNumbers::real: clear.color.float32[i] = value[i].get<float>(); break;
             }
         }
+    }
+
+    static bool is_clear_number(const Json& value, json::ClearNumbers numbers) {
+        const auto within = [&](double least, double most) {
+            return value.get<double>() >= least && value.get<double>() <= most;
+        };
+        switch (numbers) {
+        case json::ClearNumbers::unsigned_whole:
+            return value.is_number_unsigned() && within(0.0, std::numeric_limits<std::uint32_t>::max());
+        case json::ClearNumbers::signed_whole:
+            return value.is_number_integer() &&
+                   within(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max());
+        case json::ClearNumbers::real:
+            return value.is_number() && within(std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max());
+        }
+        return false;
     }
 
     /// Versions are made one by one: what no access makes, none can name.
@@ -292,8 +319,12 @@ private:
                 const std::string& name = graph_->resources[access.resource].name;
                 const std::string& pass = graph_->passes[access.pass].name;
                 json::complain(mistakes_, {"Pass " + json::in_quotes(pass), pass, name},
-                               "names version " + std::to_string(access.version) + " of " + json::in_quotes(name) +
-                                   ", but the frame makes " + std::to_string(made[access.resource]));
+                               access.version < least
+                                   ? "makes version 0 of " + json::in_quotes(name) +
+                                         ", which is what was there before the frame; the first is version 1"
+                                   : "names version " + std::to_string(access.version) + " of " +
+                                         json::in_quotes(name) + ", but the frame makes " +
+                                         std::to_string(made[access.resource]));
             }
         }
     }

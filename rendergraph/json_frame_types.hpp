@@ -28,7 +28,7 @@ template <std::size_t N>
 }
 
 /// "name@version" as two parts; the version is `none` where the text does not end in '@' and a number. Resources whose
-/// own names end so are always written with a version.
+/// own names end so are always written with a version. What no frame can make is the largest number below `none`.
 struct VersionedName {
     std::string_view name;
     std::uint32_t version = none;
@@ -40,8 +40,19 @@ struct VersionedName {
     }
     std::uint32_t version = none;
     const auto [end, error] = std::from_chars(text.data() + at + 1, text.data() + text.size(), version);
-    const bool number = error == std::errc{} && end == text.data() + text.size();
+    const bool too_large = error == std::errc::result_out_of_range;
+    const bool number = (error == std::errc{} || too_large) && end == text.data() + text.size();
+    version = too_large || version == none ? none - 1 : version;
     return number ? VersionedName{text.substr(0, at), version} : VersionedName{text};
+}
+
+/// What the numbers of a colour's clear value are.
+enum class ClearNumbers : std::uint8_t { real, unsigned_whole, signed_whole };
+[[nodiscard]] inline ClearNumbers clear_numbers_of(VkFormat format) {
+    const std::string_view name = name_in(format_names(), static_cast<std::uint64_t>(format)).value_or("");
+    return name.find("_UINT") != std::string_view::npos   ? ClearNumbers::unsigned_whole
+           : name.find("_SINT") != std::string_view::npos ? ClearNumbers::signed_whole
+                                                          : ClearNumbers::real;
 }
 
 inline constexpr std::uint64_t longest_pass_ns = 10'000'000'000;

@@ -109,13 +109,12 @@ Json clear_json(const VkClearValue& clear, VkFormat format) {
     if (is_depth_or_stencil(format)) {
         return {{"depth", clear.depthStencil.depth}, {"stencil", clear.depthStencil.stencil}};
     }
-    const std::string_view name = name_in(format_names(), static_cast<std::uint64_t>(format)).value_or("");
     Json list = Json::array();
     for (std::size_t i = 0; i < 4; ++i) {
-        if (name.find("_UINT") != std::string_view::npos) {
-            list.push_back(clear.color.uint32[i]);
-        } else {
-            list.push_back(clear.color.float32[i]);
+        switch (json::clear_numbers_of(format)) {
+        case json::ClearNumbers::unsigned_whole: list.push_back(clear.color.uint32[i]); break;
+        case json::ClearNumbers::signed_whole: list.push_back(clear.color.int32[i]); break;
+        case json::ClearNumbers::real: list.push_back(clear.color.float32[i]); break;
         }
     }
     return list;

@@ -65,7 +65,19 @@ private:
 } // namespace
 
 std::string in_quotes(std::string_view name) {
-    return "'" + std::string(name) + "'";
+    constexpr std::size_t longest = 100;
+    if (name.size() <= longest) {
+        return "'" + std::string(name) + "'";
+    }
+    std::size_t end = longest;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0U) == 0x80U) { // not within a character
+        --end;
+    }
+    return "'" + std::string(name.substr(0, end)) + "...'";
+}
+
+bool is_text(const Json& value) {
+    return value.is_string() && value.get_ref<const std::string&>().find('\0') == std::string::npos;
 }
 
 void complain(Diagnostics& mistakes, const Subject& subject, const std::string& what) {
@@ -169,7 +181,7 @@ const Json* ObjectReader::array(const char* key) {
 
 void ObjectReader::text(const char* key, std::string& out, bool required) {
     const Json* value = find(key);
-    if (value != nullptr && value->is_string()) {
+    if (value != nullptr && is_text(*value)) {
         out = value->get_ref<const std::string&>();
     } else if (value != nullptr || (required && object_ != nullptr)) {
         complain("needs a text as " + in_quotes(key));
@@ -196,6 +208,19 @@ std::optional<std::uint64_t> ObjectReader::whole_number(const char* key, std::ui
         return std::nullopt;
     }
     return value->get<std::uint64_t>();
+}
+
+void ObjectReader::real(const char* key, float& out, double least, double most) {
+    const Json* value = find(key);
+    if (value == nullptr) {
+        return;
+    }
+    const double number = value->is_number() ? value->get<double>() : least - 1.0;
+    if (number < least || number > most) {
+        complain("needs a number from " + dump(least, -1) + " to " + dump(most, -1) + " as " + in_quotes(key));
+    } else {
+        out = static_cast<float>(number);
+    }
 }
 
 std::optional<std::uint64_t> ObjectReader::name(const char* key, VulkanNames names) {

@@ -25,7 +25,10 @@ struct Subject {
     std::string resource = {};
 };
 
+/// Cut where it is too long for a sentence.
 [[nodiscard]] std::string in_quotes(std::string_view name);
+/// A text without the character that ends one in C.
+[[nodiscard]] bool is_text(const Json& value);
 void complain(Diagnostics& mistakes, const Subject& subject, const std::string& what);
 
 /// ", did you mean 'x'?" with the candidate nearest to `word`, or the list of a few where none is near.
@@ -63,6 +66,8 @@ public:
             out = static_cast<T>(*value);
         }
     }
+    /// Any number from `least` to `most`.
+    void real(const char* key, float& out, double least, double most);
     /// One of a table's names, or the plain number.
     [[nodiscard]] std::optional<std::uint64_t> name(const char* key, VulkanNames names);
     /// An array of names, or of plain numbers, as a mask.

@@ -52,6 +52,7 @@ public:
             errors_.push_back(
                 {.code = DiagnosticCode::no_queue, .message = "The queue topology must begin with a graphics queue"});
         }
+        queues();
         names();
         for (const ResourceDesc& resource : graph_.resources) {
             description(resource);
@@ -72,7 +73,57 @@ public:
     }
 
 private:
+    /// A kind of queue promises what its passes are made of.
+    void queues() {
+        for (std::size_t i = 0; i < topology_.queues.size(); ++i) {
+            const QueueInfo& queue = topology_.queues[i];
+            const std::uint8_t promised = queue.kind == QueueKind::graphics  ? can_graphics | can_compute
+                                          : queue.kind == QueueKind::compute ? can_compute
+                                                                             : can_transfer;
+            if ((queue.capabilities & promised) != promised) {
+                errors_.push_back({.code = DiagnosticCode::no_queue,
+                                   .message = "Queue " + std::to_string(i) + " is a " +
+                                              std::string(name_of(queue.kind)) + " queue that cannot do " +
+                                              (queue.kind == QueueKind::graphics ? "both graphics and compute"
+                                                                                 : std::string(name_of(queue.kind))) +
+                                              "; let it, or plan without it"});
+            }
+        }
+    }
+
+    /// Empty names, and names of two.
     void names() {
+        const auto nameless = [&](const auto& items, const char* kind) {
+            for (std::size_t i = 0; i < items.size(); ++i) {
+                if (items[i].name.empty()) {
+                    errors_.push_back(
+                        {.code = DiagnosticCode::bad_description,
+                         .message = std::string(kind) + " " + std::to_string(i) + " has an empty name; give it one",
+                         .where = items[i].where,
+                         .other_where = items[i].where});
+                }
+            }
+        };
+        nameless(graph_.resources, "Resource");
+        nameless(graph_.passes, "Pass");
+        nameless(graph_.variants, "Variant");
+        for_each_repeated(graph_.variants, [&](const VariantDesc& variant, const VariantDesc& first) {
+            errors_.push_back({.code = DiagnosticCode::duplicate_name,
+                               .message = "Two variants are called " + quoted(variant.name) + "; rename one",
+                               .where = variant.where,
+                               .other_where = first.where});
+        });
+        for (const VariantDesc& variant : graph_.variants) {
+            for (auto form = variant.forms.begin(); form != variant.forms.end(); ++form) {
+                if (std::find(variant.forms.begin(), form, *form) != form) {
+                    errors_.push_back({.code = DiagnosticCode::duplicate_name,
+                                       .message = "Two forms of variant " + quoted(variant.name) + " are called " +
+                                                  quoted(*form) + "; rename one",
+                                       .where = variant.where,
+                                       .other_where = variant.where});
+                }
+            }
+        }
         for_each_repeated(graph_.resources, [&](const ResourceDesc& resource, const ResourceDesc& first) {
             errors_.push_back({.code = DiagnosticCode::duplicate_name,
                                .resource = resource.name,
@@ -358,13 +409,13 @@ private:
                           subject(*writer[i]) + ", but it was imported as read-only; import it with a final access");
             } else if (writer[i] != nullptr && !import.has_final) {
                 bad(resource, DiagnosticCode::import_incomplete,
-                    "is imported and written, but its import does not say how the host uses it afterwards; set "
-                    "has_final and final_*");
+                    "is imported and written, but its import does not say how the host uses it afterwards; give "
+                    "it a final use");
             }
             if (import.has_final && resource.kind == ResourceKind::image &&
                 import.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
                 bad(resource, DiagnosticCode::import_incomplete,
-                    "is imported with a final access but no final layout; set final_layout");
+                    "is imported with a final access but no final layout; give it the one that the host wants");
             }
             if (import.read_only && resource.kind == ResourceKind::image &&
                 import.initial_layout == VK_IMAGE_LAYOUT_UNDEFINED) {

@@ -225,6 +225,11 @@ int run(int argc, char** argv) {
     info_command->add_option("--device", info.device, "part of a device's name, or its index");
     info_command->add_flag("--json", info.json, "print JSON");
 
+    if (const std::string word = argc > 1 ? argv[1] : ""; !word.empty() && word[0] != '-') {
+        if (app.get_subcommands([&](const CLI::App* one) { return one->get_name() == word; }).empty()) {
+            return bad_input("There is no subcommand '" + word + "'; see tyndall --help");
+        }
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {

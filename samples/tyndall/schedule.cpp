@@ -103,7 +103,8 @@ Expected<rg::QueueTopology> topology_of(const ScheduleArguments& arguments, cons
     }
     constexpr rg::QueueKind kinds[] = {rg::QueueKind::graphics, rg::QueueKind::compute, rg::QueueKind::transfer};
     rg::QueueTopology topology{{}};
-    std::stringstream list(*arguments.queues);
+    std::stringstream list(*arguments.queues +
+                           (arguments.queues->ends_with(',') ? "," : "")); // nothing is an entry too
     for (std::string text; std::getline(list, text, ',');) {
         const std::size_t at = topology.queues.size();
         const std::optional<rg::QueueInfo> queue =

@@ -6,27 +6,10 @@
 #include "rendergraph/injection.hpp"
 #include "rendergraph/json.hpp"
 #include "rendergraph/plan_cache.hpp"
-#include "tests/rendergraph/frames.hpp"
+#include "tests/rendergraph/expect_mistakes.hpp"
 
 namespace tyndall::rg::test {
 namespace {
-
-Diagnostics mistakes(GraphBuilder& graph, const QueueTopology& topology = {}) {
-    const DeclaredGraph declared = graph.finish();
-    tl::expected<Plan, Diagnostics> plan = compile(declared.desc, topology, estimate_memory(declared.desc));
-    return plan.has_value() ? Diagnostics{} : plan.error();
-}
-
-/// Exactly one mistake, of that code and text, pointing at these lines.
-void expect_one(const Diagnostics& found, DiagnosticCode code, const std::string& message, unsigned line,
-                unsigned other_line) {
-    ASSERT_EQ(found.size(), 1U) << to_text(found);
-    EXPECT_EQ(found[0].code, code) << to_text(found);
-    EXPECT_EQ(found[0].message, message);
-    EXPECT_EQ(found[0].where.line(), line);
-    EXPECT_EQ(found[0].other_where.line(), other_line);
-    EXPECT_STREQ(found[0].where.file_name(), __FILE__);
-}
 
 TEST(Diagnostics, ReadOfUnwritten) {
     GraphBuilder graph;
@@ -153,36 +136,6 @@ TEST(Diagnostics, GraphicsPassOnComputeQueue) {
                "Pass 'draw' is a graphics pass but asks for another queue; let it be automatic", made, made);
 }
 
-TEST(Diagnostics, APassIsLeftNoQueue) {
-    const auto answer = [](std::vector<QueueKind> forbidden, QueueWish wish, const QueueTopology& topology,
-                           const std::string& message, const ImportDesc& import = {.has_final = true}) {
-        GraphBuilder graph;
-        Buffer buffer = graph.import_buffer("buffer", {.size_bytes = 64}, import);
-        const unsigned made = __LINE__ + 1;
-        PassBuilder pass = graph.add_pass("fill", PassKind::compute);
-        pass.writes(buffer, Access::storage_compute).on_queue(wish);
-        for (const QueueKind kind : forbidden) {
-            pass.never_on(kind);
-        }
-        expect_one(mistakes(graph, topology), DiagnosticCode::queue_cannot, message, made, made);
-    };
-    const std::string none_left =
-        "Pass 'fill' is left no queue but one of the kind that it forbids, graphics; allow it, "
-        "or plan for a queue that can run the pass";
-    const std::vector<QueueKind> graphics = {QueueKind::graphics};
-    answer(graphics, QueueWish::automatic, one_queue(), none_left);
-    answer(graphics, QueueWish::async_compute, one_queue(), none_left);
-    answer({QueueKind::graphics, QueueKind::compute}, QueueWish::automatic, two_queues(),
-           none_left + ", since an import that it touches is not shared between families");
-    answer(graphics, QueueWish::automatic, two_queues(),
-           none_left + ", since only the first queue is ordered with the host's use of an import that it touches",
-           {.initial_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, .has_final = true});
-    answer(graphics, QueueWish::graphics, two_queues(),
-           "Pass 'fill' asks for a queue of the kind that it forbids, graphics; choose one");
-    answer({QueueKind::compute}, QueueWish::async_compute, two_queues(),
-           "Pass 'fill' asks for a queue of the kind that it forbids, compute; choose one");
-}
-
 TEST(Diagnostics, AttachmentsDiffer) {
     GraphBuilder graph;
     Image a = graph.import_image("a", color_image(64, 64), left_for_host());
@@ -226,8 +179,8 @@ TEST(Diagnostics, ImportWithoutFinalAccess) {
     graph.add_pass("fill", PassKind::compute).writes(buffer, Access::storage_compute).has_side_effect("test");
     expect_one(
         mistakes(graph), DiagnosticCode::import_incomplete,
-        "Resource 'buffer' is imported and written, but its import does not say how the host uses it afterwards; set "
-        "has_final and final_*",
+        "Resource 'buffer' is imported and written, but its import does not say how the host uses it afterwards; give "
+        "it a final use",
         made, made);
 }
 
@@ -314,34 +267,6 @@ TEST(Diagnostics, TooManyMips) {
     graph.add_pass("fill", PassKind::compute).writes(image, Access::storage_compute).has_side_effect("test");
     expect_one(mistakes(graph), DiagnosticCode::bad_description, "Resource 'image' has 6 mips, but its extent allows 5",
                made, made);
-}
-
-TEST(Diagnostics, MoreBytesThanAnyDeviceHas) {
-    GraphBuilder graph;
-    Buffer small = graph.create_buffer("small", {.size_bytes = 64});
-    const unsigned made = __LINE__ + 1;
-    Buffer large = graph.create_buffer("large", {.size_bytes = VkDeviceSize{1} << 63U});
-    (void)graph.create_buffer("larger", {.size_bytes = ~VkDeviceSize{0}}); // said once
-    graph.add_pass("fill", PassKind::compute)
-        .writes(small, Access::storage_compute)
-        .writes(large, Access::storage_compute)
-        .has_side_effect("test");
-    expect_one(mistakes(graph), DiagnosticCode::bad_description,
-               "Resource 'large' is more than the frame can have with what is declared before it, 1125899906842624 "
-               "bytes; make it smaller",
-               made, made);
-}
-
-TEST(Diagnostics, FormatWithoutSize) {
-    GraphBuilder graph;
-    const unsigned made = __LINE__ + 1;
-    Image image = graph.create_image("image", {.format = VK_FORMAT_G8_B8R8_2PLANE_420_UNORM, .extent = {8, 8, 1}});
-    graph.add_pass("fill", PassKind::compute).writes(image, Access::storage_compute).has_side_effect("test");
-    expect_one(
-        mistakes(graph), DiagnosticCode::bad_description,
-        "Resource 'image' has a format of which no size is known; ask the driver what memory it needs, or choose "
-        "another format",
-        made, made);
 }
 
 TEST(Diagnostics, NoGraphicsQueue) {

@@ -348,6 +348,56 @@ empty pass: Pass 'idle' accesses nothing and has no side effect; declare what it
 )");
 }
 
+TEST(FrameJsonMistakes, OfAnAccess) {
+    const auto answer = [](const std::string& access, const std::string& format = "D32_SFLOAT") {
+        return mistakes_of(R"({"resources": [{"name": "image", "format": ")" + format + R"(", "size": [8, 8]}],
+            "passes": [{"name": "draw", "kind": "graphics", "side_effect": "test", "accesses": [)" +
+                           access + "]}]}");
+    };
+    const auto cleared = [&](const std::string& value) {
+        return answer(R"({"writes": "image", "as": "depth_attachment", "clear": )" + value + "}");
+    };
+    const auto colored = [&](const std::string& value, const std::string& format) {
+        return answer(R"({"writes": "image", "as": "color_attachment", "clear": )" + value + "}", format);
+    };
+    EXPECT_EQ(cleared(R"({"depth": 0.5, "stencil": 7})"), "");
+    EXPECT_EQ(cleared(R"({"dpeth": 1})"),
+              "file: Pass 'draw', access 0, clear, has the unknown key 'dpeth'; did you mean 'depth'?\n");
+    EXPECT_EQ(cleared(R"({"depth": 1e300})"),
+              "file: Pass 'draw', access 0, clear, needs a number from 0.0 to 1.0 as 'depth'\n");
+    EXPECT_EQ(cleared(R"({"stencil": -1})"),
+              "file: Pass 'draw', access 0, clear, needs a whole number from 0 to 4294967295 as 'stencil'\n");
+    EXPECT_EQ(colored("[0, -1.5, 3e9, 1]", "R8G8B8A8_UNORM"), "");
+    EXPECT_EQ(
+        colored("[0, 0, 0, 1e300]", "R8G8B8A8_UNORM"),
+        "file: Pass 'draw', access 0, clears a colour image: 'clear' must be four numbers that fit into 32 bits\n");
+    EXPECT_EQ(colored("[0, 0, 0, 4294967295]", "R32_UINT"), "");
+    EXPECT_EQ(colored("[0, 0, 0, -1]", "R32_UINT"),
+              "file: Pass 'draw', access 0, clears a colour image: 'clear' must be "
+              "four whole numbers from 0 that fit into 32 bits\n");
+    EXPECT_EQ(colored("[0, 0, 0, -1]", "R32_SINT"), "");
+    EXPECT_EQ(colored("[0, 0, 0, 0.5]", "R32_SINT"), "file: Pass 'draw', access 0, clears a colour image: 'clear' must "
+                                                     "be four whole numbers that fit into 32 bits\n");
+    EXPECT_EQ(answer(R"({"reads": "image@4294967295", "as": "sampled_fragment"})"),
+              "file: Pass 'draw' names version 4294967294 of 'image', but the frame makes 0\n");
+    EXPECT_EQ(answer(R"({"reads": "image@99999999999999999999", "as": "sampled_fragment"})"),
+              "file: Pass 'draw' names version 4294967294 of 'image', but the frame makes 0\n");
+    EXPECT_EQ(answer(R"({"writes": "image@0", "as": "depth_attachment"})"),
+              "file: Pass 'draw' makes version 0 of 'image', which is what was there before the frame; the first is "
+              "version 1\n");
+}
+
+TEST(FrameJsonMistakes, OfTexts) {
+    EXPECT_EQ(mistakes_of(R"({"resources": [{"name": "a\u0000b", "bytes": 4}]})"),
+              "file: Resource 0 needs a text as 'name'\nbad description: Resource 0 has an empty name; give it one\n");
+    EXPECT_EQ(mistakes_of(R"({"variants": [{"name": "v", "forms": [7]}]})"),
+              "file: Variant 0 needs names in 'forms'\nfile: Variant 0 needs at least one name in 'forms'\n"
+              "bad description: Variant 'v' has no form; give it at least one\n");
+    const std::string answer = mistakes_of("{\"about\": \"" + std::string(100'000, 'x'));
+    EXPECT_LT(answer.size(), 300U);
+    EXPECT_NE(answer.find("xxx...'"), std::string::npos) << answer;
+}
+
 TEST(FrameJsonMistakes, NoRandomDamageCrashes) {
     std::mt19937 bits(7);
     const DeclaredGraph fog = fog_frame();

@@ -164,7 +164,7 @@ TEST(PlanCache, EveryChangeThatDecidesAPlanIsNoticed) {
         [](Inputs& in) { in.graph.variants[0].forms.emplace_back("none"); },
         [](Inputs& in) { in.topology.queues[1].family = 0; },
         [](Inputs& in) { in.topology.queues[1].kind = QueueKind::transfer; },
-        [](Inputs& in) { in.topology.queues[1].capabilities = can_transfer; },
+        [](Inputs& in) { in.topology.queues[1].capabilities = can_compute; },
         [](Inputs& in) { in.topology.queues.pop_back(); },
         [](Inputs& in) { in.memory.of_resource[1].size_bytes *= 2; },
         [](Inputs& in) { in.memory.of_resource[1].alignment *= 2; },

@@ -204,6 +204,7 @@ TEST_F(Schedule, BadArgumentsEndWithOneSentence) {
                                                       {frame, "--queues", "compute"},
                                                       {frame, "--queues", "graphics,compute:x"},
                                                       {frame, "--queues", ""},
+                                                      {frame, "--queues", "graphics,compute,"},
                                                       {frame, "--out", "plan.xml"},
                                                       {frame, "--out", "/no/such/folder/plan.json"},
                                                       {frame, "--costs", frame},

@@ -41,6 +41,9 @@ protected:
 TEST_F(BadInput, NoSubcommand) {
     expect_refused({}, {"subcommand"});
 }
+TEST_F(BadInput, UnknownSubcommand) {
+    expect_refused({"frobnicate"}, {"subcommand", "frobnicate"});
+}
 TEST_F(BadInput, UnknownOption) {
     expect_refused(render({"--sise", "1x1"}), {"--sise"});
 }
