@@ -70,6 +70,9 @@ struct Flow {
 /// Everything that can be said about single passes, accesses and resources.
 [[nodiscard]] Diagnostics validate(const GraphDesc& graph, const QueueTopology& topology);
 
+/// Of the attachments of one pass; a part of validate. O(accesses of the pass).
+void validate_attachments(const GraphDesc& graph, const PassDesc& pass, Diagnostics& errors);
+
 /// Whether the transients can be placed: each has a size, and sums of all do not overflow. O(resources).
 [[nodiscard]] Diagnostics validate_memory(const GraphDesc& graph, const MemoryRequirements& memory);
 

@@ -171,6 +171,10 @@ private:
             bad(resource, DiagnosticCode::bad_description,
                 "has " + std::to_string(image.mips) + " mips, but its extent allows " + std::to_string(longest));
         }
+        if (image.samples != VK_SAMPLE_COUNT_1_BIT && (image.mips > 1 || image.type != VK_IMAGE_TYPE_2D)) {
+            bad(resource, DiagnosticCode::bad_description,
+                "has several samples, which only 2D images with one mip can have");
+        }
         if (image.type == VK_IMAGE_TYPE_3D && image.layers > 1) {
             bad(resource, DiagnosticCode::bad_description, "is a 3D image with layers; use depth instead");
         }
@@ -220,21 +224,14 @@ private:
                                .where = pass.where,
                                .other_where = pass.where});
         }
-        const AccessDesc* first_attachment = nullptr;
         for (std::uint32_t i = pass.first_access; i < pass.first_access + pass.access_count; ++i) {
             const AccessDesc& access = graph_.accesses[i];
             one_access(pass, access);
-            const bool attachment =
-                access.access == Access::color_attachment || access.access == Access::depth_attachment;
-            if (attachment && first_attachment == nullptr) {
-                first_attachment = &access;
-            } else if (attachment) {
-                compare_attachments(*first_attachment, access);
-            }
             for (std::uint32_t k = pass.first_access; k < i; ++k) {
                 compare_accesses(graph_.accesses[k], access);
             }
         }
+        validate_attachments(graph_, pass, errors_);
     }
 
     void queue_error(const PassDesc& pass, const std::string& what) {
@@ -318,32 +315,6 @@ private:
         }
         if ((r.aspects & ~format_aspects(resource.image.format)) != 0) {
             at_access(access, DiagnosticCode::range_outside, subject(access) + " with an aspect that its format lacks");
-        }
-    }
-
-    void compare_attachments(const AccessDesc& a, const AccessDesc& b) {
-        const ResourceDesc& ra = graph_.resources[a.resource];
-        const ResourceDesc& rb = graph_.resources[b.resource];
-        const auto extent = [](const AccessDesc& access, const ResourceDesc& resource) {
-            const auto at = [&](std::uint32_t n) { return std::max(n >> access.image_range.base_mip, 1U); };
-            return std::pair{at(resource.image.extent.width), at(resource.image.extent.height)};
-        };
-        if (ra.kind != ResourceKind::image || rb.kind != ResourceKind::image) {
-            return; // reported as an impossible access
-        }
-        const auto [wa, ha] = extent(a, ra);
-        const auto [wb, hb] = extent(b, rb);
-        if (wa != wb || ha != hb || ra.image.samples != rb.image.samples) {
-            errors_.push_back({.code = DiagnosticCode::attachment_mismatch,
-                               .pass = graph_.passes[b.pass].name,
-                               .resource = rb.name,
-                               .message = "Pass " + quoted(graph_.passes[b.pass].name) + " renders to " +
-                                          quoted(ra.name) + " (" + std::to_string(wa) + "x" + std::to_string(ha) +
-                                          ", " + std::to_string(ra.image.samples) + " samples) and " + quoted(rb.name) +
-                                          " (" + std::to_string(wb) + "x" + std::to_string(hb) + ", " +
-                                          std::to_string(rb.image.samples) + " samples); make them equal",
-                               .where = b.where,
-                               .other_where = a.where});
         }
     }
 

@@ -244,6 +244,11 @@ private:
         if (is_attachment(access)) {
             box.first_a = 0;
             box.end_a = 1;
+            const std::uint32_t layers = box.end_b - box.first_b;
+            const bool fits_others = layers_ == 0 || layers == layers_;
+            if (!fits_others || (access == Access::depth_attachment && has_depth_)) {
+                return false;
+            }
             if (!std::none_of(used_.begin(), used_.end(),
                               [&](const Using& use) { return use.known == index && use.box.meets(box); })) {
                 return false;
@@ -265,6 +270,8 @@ private:
         declare(pass, known, access, direction, box);
         known.idle_before = false;
         used_.push_back({index, box});
+        layers_ = is_attachment(access) ? box.end_b - box.first_b : layers_;
+        has_depth_ = has_depth_ || access == Access::depth_attachment;
         return true;
     }
 
@@ -275,6 +282,8 @@ private:
         pass.on_queue(wish);
         used_.clear();
         may_leave_graphics_ = true;
+        layers_ = 0;
+        has_depth_ = false;
         for (std::uint32_t reads = bits_.below(4); reads > 0; --reads) {
             try_access(pass, kind, bits_.below(static_cast<std::uint32_t>(known_.size())), false);
         }
@@ -361,8 +370,11 @@ private:
     }
 
     Bits bits_;
-    Bits ban_bits_;                  ///< apart, so that the rest of a frame is the same without them
-    bool may_leave_graphics_ = true; ///< what the pass at hand does, any compute queue can
+    Bits ban_bits_; ///< apart, so that the rest of a frame is the same without them
+    // Of the pass at hand.
+    bool may_leave_graphics_ = true; ///< what it does, any compute queue can
+    std::uint32_t layers_ = 0;       ///< of its attachments, 0: it has none yet
+    bool has_depth_ = false;         ///< a depth attachment
     QueueTopology topology_;
     GraphBuilder graph_;
     std::vector<Known> known_;

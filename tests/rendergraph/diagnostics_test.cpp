@@ -145,9 +145,10 @@ TEST(Diagnostics, AttachmentsDiffer) {
     pass.writes(a, Access::color_attachment);
     const unsigned second = __LINE__ + 1;
     pass.writes(b, Access::color_attachment);
-    expect_one(mistakes(graph), DiagnosticCode::attachment_mismatch,
-               "Pass 'draw' renders to 'a' (64x64, 1 samples) and 'b' (32x64, 1 samples); make them equal", second,
-               first);
+    expect_one(
+        mistakes(graph), DiagnosticCode::attachment_mismatch,
+        "Pass 'draw' renders to 'a' (64x64, 1 layers, 1 samples) and 'b' (32x64, 1 layers, 1 samples); make them equal",
+        second, first);
 }
 
 TEST(Diagnostics, LayerOutside) {
