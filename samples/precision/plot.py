@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Work-precision plots of `tyndall precision --out FOLDER`, which runs this by itself.
+"""Plots of `tyndall precision --out FOLDER` and `tyndall stability --out FOLDER`, which run this by themselves.
 
     plot.py FOLDER
 
 Reads FOLDER/precision.csv, causes.csv and the pictures (SCENE_picture.pfm, SCENE_exact.pfm) where they are, and writes beside them, for each scene, error against time of the fog's passes on logarithmic axes (a curve a technique, the
 Pareto front marked) and the picture, the exact one and the error between them, both as PNG and the first as SVG too, and
-precision.html, which holds all of that and the tables.
+precision.html, which holds all of that and the tables. Of FOLDER/stability.csv it draws stability.png and stability.svg:
+of each case what was measured, and its bound, against what is varied.
 """
 import csv
 import html
@@ -180,23 +181,67 @@ def write_page(rows, causes, scenes, folder):
     (folder / "precision.html").write_text("\n".join(parts))
 
 
+def plot_stability(rows, folder):
+    measured = [row for row in rows if row["worst"] != "-"]
+    cases = list(dict.fromkeys((row["case"], row["measured"]) for row in measured))
+    if not cases:
+        return
+    columns = min(4, len(cases))
+    lines = -(-len(cases) // columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(4.2 * columns, 3.6 * lines), squeeze=False,
+                                constrained_layout=True)
+    for axes in grid.flat[len(cases):]:
+        axes.set_visible(False)
+    for (case, measure), axes in zip(cases, grid.flat):
+        shown = [row for row in measured if (row["case"], row["measured"]) == (case, measure)]
+        places = range(len(shown))
+        least = 1e-12  # what is exactly 0 stands there
+        curves = {}  # one for what differs after the last comma: in froxels or pixels, say
+        for place, row in zip(places, shown):
+            rest = row["parameter"].rpartition(", ")
+            curves.setdefault(rest[2] if rest[1] else "", []).append((place, max(float(row["worst"]), least)))
+        for curve in curves.values():
+            axes.plot(*zip(*curve), "o-", linewidth=0.8, markersize=4)
+        bounded = [(place, float(row["bound"])) for place, row in zip(places, shown) if row["bound"] != "-"]
+        axes.plot([place for place, _ in bounded], [bound for _, bound in bounded], "_", color="firebrick",
+                  markersize=14)
+        axes.set_xticks(list(places), [row["parameter"] for row in shown], rotation=90, fontsize=6)
+        axes.set(yscale="log", xlim=(-0.5, len(shown) - 0.5))
+        axes.set_title(f"{case}: {measure}", fontsize="x-small")
+        axes.tick_params(axis="y", which="both", labelsize=6)
+        axes.grid(axis="y", alpha=0.3)
+    figure.suptitle(f"{rows[0]['device']}; red: bound", fontsize="small")
+    for suffix in ("png", "svg"):
+        figure.savefig(folder / f"stability.{suffix}", dpi=110)
+    plt.close(figure)
+
+
+def draw_precision(folder):
+    rows = read_rows(folder / "precision.csv")
+    causes = read_csv(folder / "causes.csv")
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    for scene in scenes:
+        plot_scene(scene, judged([row for row in rows if row["scene"] == scene]), folder)
+        if (folder / f"{scene}_exact.pfm").exists():
+            plot_error(scene, folder)
+    write_page(rows, causes, scenes, folder)
+
+
 def main(arguments):
     if len(arguments) != 1:
-        print("plot.py: give the folder that `tyndall precision --out` wrote", file=sys.stderr)
+        print("plot.py: give the folder that `tyndall precision --out` or `tyndall stability --out` wrote",
+              file=sys.stderr)
         return 2
     folder = pathlib.Path(arguments[0])
+    stability = folder / "stability.csv"
     try:
-        rows = read_rows(folder / "precision.csv")
-        causes = read_csv(folder / "causes.csv")
-        scenes = list(dict.fromkeys(row["scene"] for row in rows))
-        for scene in scenes:
-            plot_scene(scene, judged([row for row in rows if row["scene"] == scene]), folder)
-            if (folder / f"{scene}_exact.pfm").exists():
-                plot_error(scene, folder)
+        if stability.exists():
+            plot_stability(read_csv(stability, ["case", "parameter", "measured", "worst", "bound", "device"]), folder)
+        if not stability.exists() or (folder / "precision.csv").exists():
+            draw_precision(folder)
     except (OSError, ValueError, KeyError) as error:
         print(f"plot.py: {error}", file=sys.stderr)
         return 2
-    write_page(rows, causes, scenes, folder)
     return 0
 
 

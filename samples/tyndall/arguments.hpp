@@ -86,6 +86,7 @@ struct PrecisionConfiguration {
     std::uint32_t slices = volumetrics::Settings{}.grid.slices;
     volumetrics::StorageFormat storage = volumetrics::Settings{}.storage;
     std::uint32_t cascade_texels = 2048; ///< of a side of the sun's shadow cascades
+    std::uint32_t averaged_frames = 0; ///< jittered and averaged evenly before the last is judged; 0: as the scene asks
 
     bool operator==(const PrecisionConfiguration&) const = default;
 };

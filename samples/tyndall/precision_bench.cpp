@@ -1,5 +1,7 @@
 #include "samples/tyndall/precision_bench.hpp"
 
+#include <algorithm>
+
 #include "samples/precision/metrics.hpp"
 #include "samples/tyndall/precision_ladder.hpp"
 #include "samples/tyndall/precision_surfaces.hpp"
@@ -72,8 +74,9 @@ Expected<Measurement> measure(Bench& bench, const PrecisionConfiguration& config
     std::vector<double> fog_ms;
     std::vector<double> frame_ms;
     std::vector<double> ratios;
-    for (std::uint32_t frame = 1; frame <= bench.frames; ++frame) {
-        const bool judged = frame == 1 || frame == bench.frames;
+    const std::uint32_t frames = std::max(bench.frames, configuration.averaged_frames);
+    for (std::uint32_t frame = 1; frame <= frames; ++frame) {
+        const bool judged = frame == 1 || frame == frames;
         if (const auto done = run->run(frame == 1, judged); !done) {
             return tl::unexpected(done.error());
         }

@@ -60,7 +60,8 @@ struct Bench {
     std::vector<double> yardstick_ms;
 };
 
-/// The rows of the first frame and of the last of `bench.frames`, after a cut, one of each a truth.
+/// The rows of the first frame and of the last of `bench.frames`, or of more where the configuration averages more,
+/// after a cut, one of each a truth.
 struct Measurement {
     std::vector<PrecisionRow> rows;
     engine::Pixels<float> last; ///< radiance of the last frame

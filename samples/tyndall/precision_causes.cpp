@@ -21,6 +21,7 @@ constexpr std::array causes{
     Cause{"exact lit fraction",
           [](PrecisionConfiguration& c) { c.visibility = volumetrics::SunVisibility::lit_fraction; }},
     Cause{"16 times the shadow map", [](PrecisionConfiguration& c) { c.cascade_texels *= 4; }},
+    Cause{"64 frames averaged", [](PrecisionConfiguration& c) { c.averaged_frames = 64; }},
     Cause{"fp32 storage", [](PrecisionConfiguration& c) { c.storage = volumetrics::StorageFormat::fp32; }},
     Cause{"quadratic integrator",
           [](PrecisionConfiguration& c) { c.integrator = volumetrics::Integrator::exponential_quadratic; }}};

@@ -15,8 +15,9 @@ namespace tyndall::samples {
 [[nodiscard]] tl::expected<void, std::string> write_pictures(const std::filesystem::path& folder, const Bench& bench,
                                                              const engine::Pixels<float>& picture);
 
-/// Draws the plots and the page of a folder that holds precision.csv (samples/precision/plot.py, which the program
-/// carries; needs Debian's python3-matplotlib, without which a sentence says so and nothing is drawn).
+/// Draws the plots of a folder that holds precision.csv, and their page, or stability.csv (samples/precision/plot.py,
+/// which the program carries; needs Debian's python3-matplotlib, without which a sentence says so and nothing is
+/// drawn).
 [[nodiscard]] tl::expected<void, std::string> draw_plots(const std::filesystem::path& folder);
 
 } // namespace tyndall::samples

@@ -61,6 +61,11 @@ volumetrics::Fog configured_fog(const PrecisionScene& scene, const PrecisionConf
     fog.settings.grid.height = configuration.grid.height;
     fog.settings.grid.slices = configuration.slices;
     fog.settings.storage = configuration.storage;
+    if (configuration.averaged_frames > 0) {
+        fog.settings.temporal = {.enabled = true,
+                                 .new_frame_weight = 1.0F / static_cast<float>(configuration.averaged_frames),
+                                 .jitter = true};
+    }
     return fog;
 }
 

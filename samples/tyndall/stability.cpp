@@ -6,6 +6,7 @@
 #include "engine/file_io.hpp"
 #include "samples/tyndall/arguments.hpp"
 #include "samples/tyndall/machine.hpp"
+#include "samples/tyndall/precision_files.hpp"
 #include "samples/tyndall/progress.hpp"
 #include "samples/tyndall/stability_pictures.hpp"
 #include "samples/tyndall/stability_report.hpp"
@@ -132,6 +133,12 @@ int run_stability(const StabilityArguments& arguments) {
         }
     }
     std::fputs((arguments.json ? to_json(*rows, device_text) : to_table(*rows, device_text)).c_str(), stdout);
+    std::fflush(stdout);
+    if (arguments.folder) {
+        if (const auto drawn = draw_plots(*arguments.folder); !drawn) {
+            return fail(exit_failed, drawn.error());
+        }
+    }
     const bool holds = std::all_of(rows->begin(), rows->end(), [](const StabilityRow& row) { return row.passed(); });
     return holds ? exit_ok : exit_failed;
 }

@@ -216,6 +216,7 @@ TEST(Precision, ChoosesAndRunsTheChoice) {
     EXPECT_LT(left("4 times the slices"), 0.5 * left("none removed"));
     EXPECT_LT(left("quadratic integrator"), 0.5 * left("none removed"));
     EXPECT_NEAR(left("fp32 storage"), left("none removed"), 0.1 * left("none removed"));
+    EXPECT_GE(left("64 frames averaged"), 0.0);
 }
 
 TEST(Precision, AShortSweepKeepsItsWordAndItsFrontIsMonotone) {

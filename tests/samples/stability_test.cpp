@@ -108,6 +108,10 @@ TEST(Stability, TheExtremesHoldAndTheFilesHoldWhatIsPrinted) {
     std::ifstream csv(folder / "stability.csv");
     EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'),
               1 + static_cast<std::ptrdiff_t>(printed["rows"].size()));
+    if (run.errors.find("no plots are drawn") == std::string::npos) {
+        EXPECT_TRUE(std::filesystem::exists(folder / "stability.png"));
+        EXPECT_TRUE(std::filesystem::exists(folder / "stability.svg"));
+    }
     std::filesystem::remove_all(folder);
 }
 
