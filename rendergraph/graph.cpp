@@ -5,11 +5,13 @@
 namespace tyndall::rg {
 namespace {
 
-// Distinguishes handles of different builders, and of one builder before and after finish(). The value reaches no
-// plan, so that it may differ from run to run.
+// Distinguishes handles of different builders, of one builder before and after finish(), and of builders that stand one
+// after the other at the same address. The value reaches no plan, so that it may differ from run to run.
 std::uint32_t next_identity(const void* builder, std::uint32_t previous) {
+    thread_local std::uint32_t built = 0;
+    built += previous == 0 ? 1 : 0;
     const auto address = reinterpret_cast<std::uintptr_t>(builder);
-    const auto mixed = static_cast<std::uint32_t>((address >> 4U) * 2654435761U);
+    const auto mixed = static_cast<std::uint32_t>((address >> 4U) * 2654435761U) + built * 0x85ebca6bU;
     const std::uint32_t next = previous == 0 ? mixed : previous + 1;
     return next == 0 ? 1 : next;
 }

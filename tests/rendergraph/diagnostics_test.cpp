@@ -243,6 +243,18 @@ TEST(Diagnostics, HandleOfAnEarlierFrame) {
     EXPECT_EQ(found[0].code, DiagnosticCode::foreign_handle);
 }
 
+TEST(Diagnostics, HandleOfABuilderThatStoodAtTheSameAddress) {
+    std::optional<GraphBuilder> graph(std::in_place);
+    const Buffer old = graph->create_buffer("old", {.size_bytes = 16});
+    graph.emplace();
+    (void)graph->create_buffer("new", {.size_bytes = 16});
+    EXPECT_FALSE(graph->describe(old));
+    graph->add_pass("use", PassKind::compute).reads(old, Access::storage_compute).has_side_effect("test");
+    const Diagnostics found = mistakes(*graph);
+    ASSERT_EQ(found.size(), 1U) << to_text(found);
+    EXPECT_EQ(found[0].code, DiagnosticCode::foreign_handle);
+}
+
 TEST(Diagnostics, HandleNeverInitialised) {
     GraphBuilder graph;
     const unsigned line = __LINE__ + 1;
