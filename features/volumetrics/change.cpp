@@ -182,7 +182,8 @@ float change_everywhere(const FrameInputs& frame, const FrameMemory& before) {
     if (air != glm::vec4(0.0F)) {
         change +=
             relative_difference(frame.medium.homogeneous.extinction_color, before.medium.homogeneous.extinction_color) +
-            relative_difference(frame.medium.height.extinction_color, before.medium.height.extinction_color);
+            relative_difference(frame.medium.height.extinction_color, before.medium.height.extinction_color) +
+            (heights_of_map(frame.medium) != heights_of_map(before.medium) ? 1.0 : 0.0);
     }
     change += march_change(frame, before);
     return static_cast<float>(std::min(change, 1.0));

@@ -38,6 +38,9 @@ FittedRange fitted_range(const FrameInputs& frame, const std::optional<FrameMemo
     if (frame.medium.noise.amplitude > 0.0F) {
         return full_because("noise ends at the range");
     }
+    if (frame.medium.map.texels) {
+        return full_because("the density map ends at the range");
+    }
     if (frame.medium.homogeneous.emission_per_m != glm::vec3(0.0F) ||
         frame.medium.height.emission_per_m != glm::vec3(0.0F)) {
         return full_because("emission ends at the range");

@@ -393,6 +393,7 @@ std::optional<LightWay> Feature::light_way(std::uint32_t view) const {
     LightWay way{.colored = found->frame->colored,
                  .march = light_march(found->frame->inputs.medium, found->frame->inputs.settings),
                  .medium = {.air = u.air,
+                            .air_heights = u.air_heights,
                             .homogeneous_color = u.homogeneous_color,
                             .height_color = u.height_color,
                             .noise_origin = u.noise_origin,

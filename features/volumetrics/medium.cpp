@@ -105,6 +105,27 @@ float mean_of_map(const Medium& medium) {
     return medium.map.texels ? static_cast<float>(medium.map.texels->mean()) : 1.0F;
 }
 
+glm::dvec2 heights_of_map(const Medium& medium) {
+    if (!medium.map.texels) {
+        return {-1e20, 1e20};
+    }
+    const auto bottom_m = static_cast<double>(medium.map.bottom_m);
+    const auto top_m = static_cast<double>(medium.map.top_m);
+    const auto fade_m = static_cast<double>(medium.map.fade_m);
+    const double high_m = top_m - bottom_m;
+    // Integral of min(1, y / fade) min(1, (high - y) / fade): the two may overlap, and each may be all that there is.
+    double column_m = high_m - fade_m;
+    if (high_m < fade_m) {
+        column_m = high_m * high_m * high_m / (6.0 * fade_m * fade_m);
+    } else if (high_m < 2.0 * fade_m) {
+        const double alone_m = high_m - fade_m;
+        const auto overlap = [&](double y) { return y * y * (0.5 * high_m - y / 3.0) / (fade_m * fade_m); };
+        column_m = alone_m * alone_m / fade_m + overlap(fade_m) - overlap(alone_m);
+    }
+    const double middle_m = 0.5 * (bottom_m + top_m);
+    return {middle_m - 0.5 * column_m, middle_m + 0.5 * column_m};
+}
+
 bool is_colored(const Medium& medium) {
     const auto differs = [](const auto& fog) {
         return fog.extinction_per_m > 0.0F && fog.extinction_color != glm::vec3(1.0F);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <tl/expected.hpp>
 
@@ -66,6 +67,10 @@ struct Medium {
 
 /// By how much the map weakens homogeneous and height fog in the mean, its profile left out; 1 where there is none.
 [[nodiscard]] float mean_of_map(const Medium& medium);
+
+/// World heights between which the map leaves fog, its profile made an edge at either end such that a vertical way
+/// meets as much; 1e20 m off without a map.
+[[nodiscard]] glm::dvec2 heights_of_map(const Medium& medium);
 
 /// Some medium takes more of one channel than of another.
 [[nodiscard]] bool is_colored(const Medium& medium);

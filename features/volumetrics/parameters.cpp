@@ -138,6 +138,11 @@ gpu::PhaseTerms phase_terms(const PhaseLobes& phase) {
     return terms;
 }
 
+/// As shaders/common/light_attenuation.glsl describes them.
+glm::vec4 air_heights(const FrameInputs& frame) {
+    return {heights_of_map(frame.medium) - frame.camera.origin_m.y, 0.0, 0.0};
+}
+
 /// From phase and ambient as `write_phase` left them, turned into view space.
 gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameters& u) {
     const Medium& medium = frame.medium;
@@ -150,6 +155,7 @@ gpu::FarField far_field(const FrameInputs& frame, const gpu::VolumetricParameter
     far.height = glm::vec4(medium.height.albedo, mean * medium.height.extinction_per_m);
     far.up = glm::vec4(view_from_render * glm::dvec3(0.0, 1.0, 0.0),
                        frame.camera.origin_m.y - static_cast<double>(medium.height.base_height_m));
+    far.heights = air_heights(frame);
     far.sun_illuminance.w = medium.height.falloff_per_m;
     if (frame.sun) {
         const glm::dvec3 travel = glm::normalize(glm::dvec3(frame.sun->direction));
@@ -402,6 +408,7 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
                              medium.height.falloff_per_m, 0.0, 0.0);
     u.air = air_of(frame);
     u.air.w = static_cast<float>(frame.camera.origin_m.y - static_cast<double>(u.air.w));
+    u.air_heights = air_heights(frame);
     write_noise(frame, u);
     write_map(frame, u);
     u.density_scale = glm::vec4(density_scale, 1.0F / density_scale, 0.0F, 0.0F);

@@ -48,6 +48,14 @@ vec3 mean_albedo(FarField far, vec2 taus) {
     return mix(far.homogeneous.rgb, far.height.rgb, taus.y / max(taus.x + taus.y, 1e-30));
 }
 
+// Where a way of length_m from height y, rising by `climb` per metre, enters and leaves the air between the heights; not
+// in order where it misses it. A level way outside never enters.
+vec2 part_between_heights(vec2 heights, float y, float climb, float length_m) {
+    float away = mix(1e-12, -1e-12, y < heights.x);
+    vec2 ends_m = (heights - y) / mix(climb, away, abs(climb) < 1e-12);
+    return vec2(max(min(ends_m.x, ends_m.y), 0.0), min(max(ends_m.x, ends_m.y), length_m));
+}
+
 // Integral over a piece of optical depth tau of e^-t times the transmittance of the light's own way, whose optical depth
 // goes from `light_start` to `light_end`: exact where it changes as the piece's own does, which it does in height fog.
 float scattered_light(float tau, float light_start, float light_end) {
@@ -58,13 +66,16 @@ float scattered_light(float tau, float light_start, float light_end) {
 // The path from `start` (view space, m) in direction `slope`, along which view depth grows by 1, over depth_m > 0.
 // Source and extinction are those of the froxels. The path has two pieces: what lies within half an optical depth of the
 // homogeneous fog and 1.5 scale heights of the other, and the rest. In each the albedo is the mean weighted with optical
-// depth.
+// depth. Only what lies between far.heights counts.
 FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
     float stretch = length(slope);
     vec3 ray = slope / stretch;
-    float length_m = min(depth_m * stretch, 1e30);
-    float height = dot(far.up.xyz, start) + far.up.w;
     float climb = dot(far.up.xyz, ray);
+    float y = dot(far.up.xyz, start);
+    vec2 part_m = part_between_heights(far.heights.xy, y, climb, min(depth_m * stretch, 1e30));
+    float length_m = max(part_m.y - part_m.x, 0.0);
+    y = clamp(y + climb * part_m.x, far.heights.x, far.heights.y);
+    float height = y + far.up.w;
     float scale_m = 1.5 / max(far.sun_illuminance.w * abs(climb), 1e-30); // over which the height fog changes
     float near_m = min(length_m, min(0.5 / max(far.homogeneous.w, 1e-30), scale_m));
     vec2 near = vec2(far.homogeneous.w * near_m, far_height_optical_depth(far, height, climb, near_m));
@@ -76,10 +87,10 @@ FarFog far_fog(FarField far, vec3 start, vec3 slope, float depth_m) {
     float attenuation = exp(-(all.x + all.y));
 
     vec3 sun_travel = vec3(0.0, dot(far.up.xyz, far.sun_direction.xyz), 0.0);
-    vec4 air = vec4(0.0, far.height.w * far.sun_direction.w, far.sun_illuminance.w, height);
-    float sun_start = air_optical_depth_to_sun(air, vec3(0.0), sun_travel);
-    float sun_middle = air_optical_depth_to_sun(air, vec3(0.0, climb * near_m, 0.0), sun_travel);
-    float sun_end = air_optical_depth_to_sun(air, vec3(0.0, climb * length_m, 0.0), sun_travel);
+    vec4 air = vec4(0.0, far.height.w * far.sun_direction.w, far.sun_illuminance.w, far.up.w);
+    float sun_start = air_optical_depth_to_sun(air, far.heights.xy, vec3(0.0, y, 0.0), sun_travel);
+    float sun_middle = air_optical_depth_to_sun(air, far.heights.xy, vec3(0.0, y + climb * near_m, 0.0), sun_travel);
+    float sun_end = air_optical_depth_to_sun(air, far.heights.xy, vec3(0.0, y + climb * length_m, 0.0), sun_travel);
     float phase = phase_of_terms(far.phase, far.sun_direction.xyz, -ray);
     vec3 sun = far.sun_illuminance.rgb * phase;
     vec3 ambient = far.ambient.rgb + far.ambient_x.rgb * ray.x + far.ambient_y.rgb * ray.y + far.ambient_z.rgb * ray.z;

@@ -25,6 +25,7 @@ struct FarField {
     vec4 height_color;      // the same of the height fog
     vec4 height;          // rgb albedo; w: extinction at and below the base, 1/m
     vec4 up;              // xyz: the world's up in view space; w: height of view space's origin above the base, m
+    vec4 heights;         // xy: between which there is fog, along `up` from view space's origin, m; zw 0
     vec4 sun_direction;   // xyz: unit direction in which it travels, view space; w: 1 where the height fog
                           // weakens it, else 0
     vec4 sun_illuminance; // rgb lux; w: falloff of the height fog, 1/m

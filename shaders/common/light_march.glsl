@@ -39,13 +39,13 @@ vec3 marched_change(vec2 base, vec3 point, vec3 direction, vec2 span, float grow
     for (float i = 0.0; i < steps; i += 1.0) {
         vec3 near = point + t * direction;
         vec3 far = point + (t + dt) * direction;
-        float mean = mean_height_density(MEDIUM.air.w + near.y, MEDIUM.air.w + far.y, MEDIUM.air.z);
-        float before = (base.x + base.y * mean) * MEDIUM.density_scale.x;
+        vec2 air = base * mean_air_density(MEDIUM.air, MEDIUM.air_heights.xy, near.y, far.y);
+        float before = (air.x + air.y) * MEDIUM.density_scale.x;
         vec4 medium = vec4(0.0, 0.0, 0.0, before);
         vec3 extinction = vec3(0.0);
         vec3 colored_before = vec3(0.0);
         if (COLORED_EXTINCTION) {
-            colored_before = (base.x * MEDIUM.homogeneous_color.rgb + base.y * mean * MEDIUM.height_color.rgb) *
+            colored_before = (air.x * MEDIUM.homogeneous_color.rgb + air.y * MEDIUM.height_color.rgb) *
                              MEDIUM.density_scale.x;
             extinction = colored_before;
         }
@@ -71,10 +71,12 @@ vec3 marched_change(vec2 base, vec3 point, vec3 direction, vec2 span, float grow
 
 // Transmittance of the straight way from a point to a light, `way` metres off.
 vec3 light_transmittance(vec3 point, vec3 way) {
-    vec3 tau = vec3(air_optical_depth(MEDIUM.air, point, way));
+    vec2 heights = MEDIUM.air_heights.xy;
+    vec3 tau = vec3(air_optical_depth(MEDIUM.air, heights, point, way));
     if (COLORED_EXTINCTION) {
-        tau = air_optical_depth(vec4(MEDIUM.air.x, 0.0, MEDIUM.air.zw), point, way) * MEDIUM.homogeneous_color.rgb +
-              air_optical_depth(vec4(0.0, MEDIUM.air.yzw), point, way) * MEDIUM.height_color.rgb;
+        vec4 even = vec4(MEDIUM.air.x, 0.0, MEDIUM.air.zw);
+        tau = air_optical_depth(even, heights, point, way) * MEDIUM.homogeneous_color.rgb +
+              air_optical_depth(vec4(0.0, MEDIUM.air.yzw), heights, point, way) * MEDIUM.height_color.rgb;
     }
     if (!light_volumes && light_octaves == 0u) {
         return exp(-tau);
@@ -92,7 +94,7 @@ vec3 light_transmittance(vec3 point, vec3 way) {
 // and noise change none of it, either. Noise is followed through 6 scale heights of the height fog, and as far as the
 // steps can see it; beyond, its mean remains.
 vec3 sun_transmittance(vec3 point, vec3 travel) {
-    vec3 tau = vec3(air_optical_depth_to_sun(MEDIUM.air, point, travel));
+    vec3 tau = vec3(air_optical_depth_to_sun(MEDIUM.air, MEDIUM.air_heights.xy, point, travel));
     if (COLORED_EXTINCTION) {
         tau *= MEDIUM.height_color.rgb;
     }

@@ -10,6 +10,7 @@ TYNDALL_INTEROP_BEGIN
 
 struct LightMedium {
     vec4 air;           // see light_attenuation.glsl
+    vec4 air_heights;   // xy: there, too; zw 0
     vec4 homogeneous_color; // rgb: extinction of each channel in parts of air's, of the homogeneous fog
     vec4 height_color;      // and of the height fog
     vec4 noise_origin;  // xyz: render space's origin in noise cells, in [0, 256); w: amplitude of the first octave

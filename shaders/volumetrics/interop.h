@@ -38,6 +38,7 @@ struct VolumetricParameters {
     vec4 height_emission;      // the same at and below the base
     vec4 height_law;      // x: base height above the camera, m; y: falloff, 1/m; zw 0
     vec4 air;             // see common/light_attenuation.glsl
+    vec4 air_heights;     // xy: there, too; zw 0
     // Of noise as octaves, of noise as volumes:
     vec4 noise_origin;    // xyz: the camera in noise cells, wind included, in [0, 256); w: amplitude of the first octave.
                           // Volumes: in periods of the shape, in [0, 1); w: amplitude

@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <random>
 
 #include <glm/gtc/quaternion.hpp>
 
+#include "features/volumetrics/reference/density_texels.hpp"
 #include "features/volumetrics/reference/medium.hpp"
 #include "tests/volumetrics/fog_fixture.hpp"
 
@@ -140,6 +142,68 @@ TEST_F(DensityTextures, AreCopiedOnceAndOnlyWhereThereAreSome) {
     EXPECT_FALSE(has(second[0].pass_names, "densities 0 copy"));
     EXPECT_EQ(second[1].density, first[0].density);
     EXPECT_EQ(feature().own_images().size(), 1U);
+}
+
+TEST_F(DensityTextures, LightComesThroughTheMapsHeights) {
+    // Fog between 3 m below and 3 m above the camera, a lamp and the sun far above.
+    Scene scene = small_scene();
+    Medium& medium = scene.inputs.medium;
+    medium.map = {
+        .texels = *DensityTexels::create({1, 1, 1}, {255}), .bottom_m = 17.0F, .top_m = 23.0F, .fade_m = 0.01F};
+    const auto expect = [&](const char* what, const std::function<double(const glm::dvec3&)>& expected) {
+        const Result result = render(scene);
+        double worst = 0.0;
+        for (std::uint32_t k = 4; k < slices; k += 3) {
+            for (std::uint32_t y = 0; y < height; ++y) {
+                const glm::dvec3 ray(tan_x * (2.0 * 11.0 / (width - 1.0) - 1.0),
+                                     -tan_y * (2.0 * y / (height - 1.0) - 1.0), -1.0);
+                const glm::dvec3 p = (k + 0.5) * ray;
+                if (std::abs(p.y) < 2.4) {
+                    const double found = static_cast<double>(result.in_scattered[(k * height + y) * width + 11].r);
+                    worst = std::max(worst, std::abs(found / expected(p) - 1.0));
+                }
+            }
+        }
+        std::printf("light through fog between heights, %s: %.1e off\n", what, worst);
+        EXPECT_LE(worst, 2e-2) << what;
+    };
+    const double per_sphere = 1.0 / (4.0 * 3.14159265358979);
+    medium.height = {.extinction_per_m = 0.1F, .base_height_m = 21.0F, .falloff_per_m = 0.3F};
+    scene.inputs.sun = Sun{.direction = {0.6F, -0.8F, 0.0F}, .illuminance_lux = glm::vec3(10.0F)};
+    expect("the sun", [&](const glm::dvec3& p) {
+        const double above = (std::exp(-0.3 * std::max(0.0, p.y - 1.0)) - std::exp(-0.3 * 2.0)) / 0.3;
+        return 10.0 * per_sphere * std::exp(-0.1 * (above + std::max(0.0, 1.0 - p.y)) / 0.8);
+    });
+    scene.inputs.sun.reset();
+    medium.height.extinction_per_m = 0.0F;
+    medium.homogeneous.extinction_per_m = 0.1F;
+    const glm::dvec3 lamp(40.0, 200.0, -30.0);
+    scene.lights = {{.position_range = glm::vec4(lamp, 1e6F),
+                     .intensity_type = glm::vec4(glm::vec3(1e6F), 0.0F),
+                     .direction_radius = {0.0F, -1.0F, 0.0F, 0.0F},
+                     .cone = {0.0F, 1.0F, 0.0F, 0.0F}}};
+    expect("a lamp", [&](const glm::dvec3& p) {
+        const glm::dvec3 way = lamp - p;
+        const double through_m = (3.0 - p.y) * glm::length(way) / way.y;
+        return 1e6 * per_sphere / glm::dot(way, way) * std::exp(-0.1 * through_m);
+    });
+}
+
+TEST(DensityTexels, HeightsHoldAsMuchAsTheProfile) {
+    Medium medium;
+    medium.map.texels = *DensityTexels::create({1, 1, 1}, {255});
+    for (const float high_m : {0.0F, 0.7F, 1.0F, 1.6F, 2.0F, 9.0F}) {
+        medium.map.bottom_m = 5.0F;
+        medium.map.top_m = 5.0F + high_m;
+        medium.map.fade_m = 1.0F;
+        double column_m = 0.0;
+        for (int i = 0; i < 10000; ++i) {
+            column_m += 1e-3 * reference::map_density(medium.map, {0.0, 5.0 + 1e-3 * (i + 0.5), 0.0});
+        }
+        const glm::dvec2 heights = heights_of_map(medium);
+        EXPECT_NEAR(heights.y - heights.x, column_m, 1e-5) << high_m;
+        EXPECT_NEAR(heights.x + heights.y, 10.0 + static_cast<double>(high_m), 1e-5) << high_m;
+    }
 }
 
 TEST(DensityTexels, ImpossibleOnesAreRefused) {

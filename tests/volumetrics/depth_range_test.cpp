@@ -61,6 +61,9 @@ TEST(FittedRange, IsTheWholeRangeWhereTheFarFieldKnowsLess) {
     frame.medium.height.emission_per_m = glm::vec3(1.0F);
     EXPECT_EQ(fitted_range(frame, std::nullopt).range_m, 64.0F);
     frame = view_of(0.0, 4.0);
+    frame.medium.map.texels = *DensityTexels::create({1, 1, 1}, {255});
+    EXPECT_EQ(fitted_range(frame, std::nullopt).range_m, 64.0F);
+    frame = view_of(0.0, 4.0);
     frame.visible_depth_m.reset();
     EXPECT_EQ(fitted_range(frame, std::nullopt).range_m, 64.0F);
 }
