@@ -208,18 +208,59 @@ std::uint32_t write_volumes(const FrameInputs& frame, float density_scale, float
     return count;
 }
 
-/// Radiance that local lights in-scatter beside them, the largest of all: a decimetre from a light in the grid, at the
-/// grid's nearest place from one outside. `longest_m` holds the grid around the eye.
+/// Of the brightest channel, cd.
+double brightest_cd(const gpu::GpuLight& light) {
+    const glm::vec4& candela = light.intensity_type;
+    return static_cast<double>(std::max({candela.x, candela.y, candela.z}));
+}
+
+/// Lights beside which `local_radiance` looks for the brightest place.
+constexpr std::size_t most_places = 64;
+
+/// All of the lights, or most_places at equal steps of the sum of intensities in the host's order: a bright crowd has
+/// some of them.
+std::vector<std::size_t> places_to_look(const std::vector<gpu::GpuLight>& lights) {
+    double total_cd = 0.0;
+    for (const gpu::GpuLight& light : lights) {
+        total_cd += brightest_cd(light);
+    }
+    std::vector<std::size_t> places;
+    double sum_cd = 0.0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const double step_before = std::floor(sum_cd / total_cd * most_places + 0.5);
+        sum_cd += brightest_cd(lights[i]);
+        const double step = std::floor(sum_cd / total_cd * most_places + 0.5);
+        if (lights.size() <= most_places || step > step_before) {
+            places.push_back(i);
+        }
+    }
+    return places;
+}
+
+/// Radiance that all local lights together in-scatter beside one of them, the largest found: a decimetre and more from
+/// each light in the grid, at the grid's nearest place to one outside. `longest_m` holds the grid around the eye.
+///
+/// At any place a decimetre or more from all lights it is at most four times that beside the light nearest to there,
+/// since every other light is at least half as far from the place as from that light. Up to most_places lights the
+/// search is complete; of more it is a sample, so that its cost stays linear, and a bound of each light alone.
 double local_radiance(const FrameInputs& frame, double longest_m) {
+    const auto received = [](const gpu::GpuLight& light, double distance_m) {
+        const double nearest_m = std::max({distance_m, static_cast<double>(light.direction_radius.w), 0.1});
+        return distance_m < static_cast<double>(light.position_range.w) ? brightest_cd(light) / (nearest_m * nearest_m)
+                                                                        : 0.0;
+    };
     double largest = 0.0;
     for (const gpu::GpuLight& light : frame.lights) {
-        const double away_m = glm::length(glm::dvec3(light.position_range)) - longest_m;
-        const double nearest_m = std::max({away_m, static_cast<double>(light.direction_radius.w), 0.1});
-        const glm::vec4& candela = light.intensity_type;
-        const auto brightest = static_cast<double>(std::max({candela.x, candela.y, candela.z}));
-        if (away_m < static_cast<double>(light.position_range.w)) {
-            largest = std::max(largest, brightest / (nearest_m * nearest_m));
+        largest = std::max(largest, received(light, glm::length(glm::dvec3(light.position_range)) - longest_m));
+    }
+    for (const std::size_t i : places_to_look(frame.lights)) {
+        const glm::dvec3 position_m(frame.lights[i].position_range);
+        const glm::dvec3 place_m = position_m * std::min(1.0, longest_m / std::max(glm::length(position_m), 1e-30));
+        double sum = 0.0;
+        for (const gpu::GpuLight& light : frame.lights) {
+            sum += received(light, glm::distance(glm::dvec3(light.position_range), place_m));
         }
+        largest = std::max(largest, sum);
     }
     return largest * peak(phase_of(frame.medium));
 }

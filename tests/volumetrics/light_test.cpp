@@ -32,7 +32,7 @@ gpu::GpuLight spot_light(const glm::vec3& position, float range_m, float candela
 
 /// Points and spots of many sizes in and around the view, also behind the camera and beyond the range.
 /// Braces: compilers evaluate arguments in parentheses in orders of their own.
-std::vector<gpu::GpuLight> random_lights(std::size_t count, unsigned seed) {
+std::vector<gpu::GpuLight> random_lights(std::size_t count, unsigned seed, float longest_m = 12.0F) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
     std::vector<gpu::GpuLight> lights;
@@ -40,7 +40,7 @@ std::vector<gpu::GpuLight> random_lights(std::size_t count, unsigned seed) {
         const float depth_m = -5.0F + 90.0F * unit(random);
         const glm::vec3 position{(2.4F * unit(random) - 1.2F) * depth_m, (1.4F * unit(random) - 0.7F) * depth_m,
                                  -depth_m};
-        const float range_m = 0.2F * std::pow(60.0F, unit(random));
+        const float range_m = 0.2F * std::pow(5.0F * longest_m, unit(random));
         const float candela = 10.0F + 100.0F * unit(random);
         const glm::vec3 direction{unit(random) - 0.5F, unit(random) - 0.5F, unit(random) - 0.5F};
         const double outer = 0.05 + 1.5 * static_cast<double>(unit(random));
@@ -66,8 +66,6 @@ bool reaches(const gpu::GpuLight& light, const glm::dvec3& p) {
 
 class Clusters : public FogTest {
 protected:
-    static constexpr glm::uvec3 counts{20, 12, 32};
-
     /// The cluster of a view-space point, or -1 outside the view.
     [[nodiscard]] static int cluster_of(const GridSettings& grid, const glm::dvec3& p) {
         const double depth_m = -p.z;
@@ -79,8 +77,54 @@ protected:
         const double t = std::log1p(depth_m / s) / std::log1p(static_cast<double>(grid.range_m) / s);
         const glm::uvec3 froxel(uv.x * (grid.width - 1) + 0.5, uv.y * (grid.height - 1) + 0.5,
                                 std::min(t, 1.0) * grid.slices);
-        const glm::uvec3 c = glm::min(froxel / glm::uvec3(8, 8, 2), counts - 1U);
+        const glm::uvec3 counts = counts_of(grid);
+        const glm::uvec3 c = glm::min(froxel / block, counts - 1U);
         return static_cast<int>((c.z * counts.y + c.y) * counts.x + c.x);
+    }
+
+    /// Points within each light's range, at random: their clusters list the light, and few more than those are listed.
+    void expect_complete(const Scene& scene, int samples, std::size_t least_tested, double most_listed) {
+        const Result result = render(scene);
+        const glm::uvec3 counts = counts_of(scene.inputs.settings.grid);
+        const std::size_t words = (scene.lights.size() + 31) / 32;
+        ASSERT_EQ(result.masks.size(), std::size_t{counts.x} * counts.y * counts.z * words);
+
+        std::mt19937 random(11);
+        std::uniform_real_distribution<double> signed_unit(-1.0, 1.0);
+        std::size_t tested = 0;
+        std::vector<std::uint32_t> exact(result.masks.size(), 0);
+        for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+            const glm::dvec3 centre(scene.lights[i].position_range);
+            const double range_m = static_cast<double>(scene.lights[i].position_range.w);
+            for (int sample = 0; sample < samples; ++sample) {
+                const glm::dvec3 p =
+                    centre + range_m * glm::dvec3{signed_unit(random), signed_unit(random), signed_unit(random)};
+                const int cluster = cluster_of(scene.inputs.settings.grid, p);
+                if (cluster < 0 || !reaches(scene.lights[i], p)) {
+                    continue;
+                }
+                ++tested;
+                const std::size_t word = static_cast<std::size_t>(cluster) * words + i / 32;
+                exact[word] |= 1U << (i % 32);
+                ASSERT_NE(result.masks[word] >> (i % 32) & 1U, 0U)
+                    << "light " << i << " at " << p.x << " " << p.y << " " << p.z;
+            }
+        }
+        EXPECT_GT(tested, least_tested);
+        std::size_t listed = 0;
+        std::size_t reached = 0;
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            listed += static_cast<std::size_t>(std::popcount(result.masks[i]));
+            reached += static_cast<std::size_t>(std::popcount(exact[i]));
+        }
+        std::printf("clusters list %zu lights, %zu samples reach %zu\n", listed, tested, reached);
+        EXPECT_LT(static_cast<double>(listed), most_listed * static_cast<double>(reached));
+    }
+
+private:
+    static constexpr glm::uvec3 block{8, 8, 2};
+    [[nodiscard]] static glm::uvec3 counts_of(const GridSettings& grid) {
+        return (glm::uvec3(grid.width, grid.height, grid.slices) + block - 1U) / block;
     }
 };
 
@@ -88,40 +132,18 @@ TEST_F(Clusters, MissNoLightAndStayTight) {
     Scene scene = plain_scene();
     scene.inputs.medium.homogeneous.extinction_per_m = 0.01F;
     scene.lights = random_lights(100, 3);
-    const Result result = render(scene);
-    const std::size_t words = 4;
-    ASSERT_EQ(result.masks.size(), std::size_t{20} * 12 * 32 * words);
+    expect_complete(scene, 20000, 100000, 3.0);
+}
 
-    std::mt19937 random(11);
-    std::uniform_real_distribution<double> signed_unit(-1.0, 1.0);
-    std::size_t tested = 0;
-    std::vector<std::uint32_t> exact(result.masks.size(), 0);
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const glm::dvec3 centre(scene.lights[i].position_range);
-        const double range_m = static_cast<double>(scene.lights[i].position_range.w);
-        for (int sample = 0; sample < 20000; ++sample) {
-            const glm::dvec3 p =
-                centre + range_m * glm::dvec3{signed_unit(random), signed_unit(random), signed_unit(random)};
-            const int cluster = cluster_of(scene.inputs.settings.grid, p);
-            if (cluster < 0 || !reaches(scene.lights[i], p)) {
-                continue;
-            }
-            ++tested;
-            const std::size_t word = static_cast<std::size_t>(cluster) * words + i / 32;
-            exact[word] |= 1U << (i % 32);
-            ASSERT_NE(result.masks[word] >> (i % 32) & 1U, 0U)
-                << "light " << i << " at " << p.x << " " << p.y << " " << p.z;
-        }
-    }
-    EXPECT_GT(tested, 100000U);
-    std::size_t listed = 0;
-    std::size_t reached = 0;
-    for (std::size_t i = 0; i < exact.size(); ++i) {
-        listed += static_cast<std::size_t>(std::popcount(result.masks[i]));
-        reached += static_cast<std::size_t>(std::popcount(exact[i]));
-    }
-    std::printf("clusters list %zu lights, sampling reaches %zu\n", listed, reached);
-    EXPECT_LT(static_cast<double>(listed), 3.0 * static_cast<double>(reached));
+TEST_F(Clusters, MissNoneOfFourThousandLights) {
+    Scene scene = plain_scene();
+    scene.image = {32, 18};
+    scene.inputs.settings.grid.width = 32;
+    scene.inputs.settings.grid.height = 18;
+    scene.inputs.settings.grid.slices = 32;
+    scene.inputs.medium.homogeneous.extinction_per_m = 0.01F;
+    scene.lights = random_lights(4096, 4, 1.5F);
+    expect_complete(scene, 500, 100000, 3.0);
 }
 
 TEST_F(Clusters, ChangeNoBitOfTheLighting) {
@@ -129,19 +151,27 @@ TEST_F(Clusters, ChangeNoBitOfTheLighting) {
     scene.inputs.medium.homogeneous.extinction_per_m = 0.01F;
     scene.inputs.medium.phase_g = 0.3F;
     scene.inputs.settings.temporal.jitter = true;
-    scene.lights = random_lights(70, 5);
-    const Result with = render(scene);
-    scene.inputs.settings.clusters = false;
-    scene.inputs.cut = true;
-    const Result without = render(scene);
-    EXPECT_TRUE(without.masks.empty());
-    EXPECT_EQ(with.in_scattered, without.in_scattered);
-    EXPECT_EQ(with.color, without.color);
-    float brightest = 0.0F;
-    for (const glm::vec4& v : with.in_scattered) {
-        brightest = std::max(brightest, v.r);
+    for (const std::size_t count : {std::size_t{70}, std::size_t{300}}) { // in a uniform, and in a storage buffer
+        scene.lights = random_lights(count, 5);
+        scene.inputs.settings.clusters = true;
+        const Result with = render(scene);
+        scene.inputs.settings.clusters = false;
+        scene.inputs.cut = true;
+        const Result without = render(scene);
+        EXPECT_TRUE(without.masks.empty());
+        EXPECT_EQ(with.in_scattered, without.in_scattered) << count;
+        EXPECT_EQ(with.color, without.color) << count;
+        float brightest = 0.0F;
+        for (const glm::vec4& v : with.in_scattered) {
+            brightest = std::max(brightest, v.r);
+        }
+        EXPECT_GT(brightest, 1.0F);
+        // The last one is there: of the lamps above none is in the view's middle.
+        scene.lights.back() = point_light({0.0F, 0.0F, -8.0F}, 3.0F, 1e4F);
+        scene.inputs.settings.clusters = true;
+        const Result last = render(scene);
+        EXPECT_NE(last.in_scattered, with.in_scattered) << count;
     }
-    EXPECT_GT(brightest, 1.0F);
 }
 
 class LocalLight : public FogTest {
@@ -207,6 +237,31 @@ TEST_F(LocalLight, RadianceAlongRaysMatchesAnIntegral) {
     }
     std::printf("point and spot light, largest relative error over 405 rays: %.3f\n", worst);
     EXPECT_LE(worst, 0.08);
+}
+
+TEST_F(LocalLight, ManyTogetherAreAsBrightInHalfPrecision) {
+    Scene scene = plain_scene();
+    scene.image = {80, 45};
+    scene.inputs.medium.homogeneous = {.extinction_per_m = 0.05F, .albedo = glm::vec3(1.0F)};
+    const auto mean = [&](StorageFormat storage) {
+        scene.inputs.settings.storage = storage;
+        double sum = 0.0;
+        for (const glm::vec4& pixel : render(scene).color) {
+            sum += static_cast<double>(pixel.r);
+        }
+        return sum;
+    };
+    for (const double across_m : {0.6, 0.0}) {
+        scene.lights.clear();
+        for (int i = 0; i < 64; ++i) {
+            const double angle = 2.0 * pi * i / 64.0;
+            const glm::dvec3 place(0.5 * across_m * std::cos(angle), 0.5 * across_m * std::sin(angle), -6.0);
+            scene.lights.push_back(point_light(glm::vec3(place), 30.0F, 8.0F, 0.02F));
+        }
+        const double ratio = mean(StorageFormat::fp16) / mean(StorageFormat::fp32);
+        std::printf("64 lights, %.1f m across: %.4f in fp16 of what they are in fp32\n", across_m, ratio);
+        EXPECT_NEAR(ratio, 1.0, 3e-3);
+    }
 }
 
 TEST_F(LocalLight, InFogIsSteadyAsItCrossesSlices) {

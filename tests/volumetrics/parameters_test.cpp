@@ -199,6 +199,58 @@ TEST(Parameters, RadianceScaleIsThatOfTheLocalLightsToo) {
     EXPECT_GT(scale_of(1.0F, before), kept);
 }
 
+/// Candles in a ring 0.6 m across.
+std::vector<gpu::GpuLight> ring_of_candles(std::size_t count) {
+    std::vector<gpu::GpuLight> lights;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(count);
+        lights.push_back({.position_range = glm::vec4(0.3 * std::cos(angle), 0.2 + 0.3 * std::sin(angle), -6.0, 30.0),
+                          .intensity_type = glm::vec4(glm::vec3(10.0F), 0.0F),
+                          .direction_radius = {0.0F, -1.0F, 0.0F, 0.02F}});
+    }
+    return lights;
+}
+
+TEST(Parameters, RadianceScaleIsThatOfLightsTogether) {
+    FrameInputs frame;
+    frame.camera.clip_from_view = perspective(1.0, 0.5625, 0.1, 0.0);
+    frame.medium.homogeneous.extinction_per_m = 0.01F;
+    const auto scale_of = [&](std::vector<gpu::GpuLight> lights) {
+        frame.lights = std::move(lights);
+        return static_cast<double>(radiance_scale_for(frame));
+    };
+    const double alone = scale_of(ring_of_candles(1));
+    // Everywhere a decimetre off the candles.
+    frame.lights = ring_of_candles(64);
+    double brightest = 0.0;
+    for (double x = 0.0; x < 0.8; x += 0.01) {
+        for (double y = -0.4; y < 0.8; y += 0.01) {
+            double sum = 0.0;
+            for (const gpu::GpuLight& light : frame.lights) {
+                const double d = glm::distance(glm::dvec3(light.position_range), glm::dvec3(x, y, -6.0));
+                sum += 10.0 / std::pow(std::max(d, 0.1), 2.0) / (4.0 * 3.14159265358979);
+            }
+            brightest = std::max(brightest, sum);
+        }
+    }
+    const double ring = static_cast<double>(radiance_scale_for(frame));
+    EXPECT_LE(brightest * ring, 65504.0);
+    EXPECT_GE(brightest * ring, 8192.0);
+    EXPECT_LT(ring, alone);
+    // Lights far from each other are as one, in whatever number.
+    std::vector<gpu::GpuLight> scattered;
+    for (int i = 0; i < 1000; ++i) {
+        scattered.push_back(ring_of_candles(1).front());
+        scattered.back().position_range = glm::vec4(20.0F * glm::vec3(i % 10, i / 10 % 10, -(i / 100)), 30.0F);
+    }
+    EXPECT_EQ(scale_of(scattered), alone);
+    // A crowd among them is not.
+    for (int i = 0; i < 100; ++i) {
+        scattered.push_back(ring_of_candles(1).front());
+    }
+    EXPECT_LE(scale_of(scattered), alone / 32.0);
+}
+
 TEST(Parameters, NoiseStaysPreciseFarFromTheOriginAndLate) {
     FrameInputs frame;
     frame.medium.noise = {.amplitude = 0.5F, .scale_m = 2.0F, .wind_m_s = {1.0F, 0.0F, 0.0F}};
