@@ -13,6 +13,9 @@
 namespace tyndall::volumetrics {
 namespace {
 
+constexpr float largest_intensity_cd = 1e9F;
+constexpr double latest_s = 1e10;
+
 tl::expected<VkSampler, Error> make_sampler(const rg::DeviceTable& vk, VkDevice device, VkFilter filter,
                                             VkSamplerAddressMode address) {
     const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
@@ -38,6 +41,30 @@ bool is_finite(const glm::dmat4& m) {
         }
     }
     return true;
+}
+
+bool is_finite(const glm::vec4& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
+/// What is wrong with the light; null: nothing.
+const char* complaint(const gpu::GpuLight& light) {
+    const glm::vec4& candela = light.intensity_type;
+    if (!is_finite(light.position_range) || light.position_range.w <= 0.0F) {
+        return "position_range must be finite, with a range above 0.";
+    }
+    if (!is_finite(candela) || std::min({candela.x, candela.y, candela.z}) < 0.0F ||
+        std::max({candela.x, candela.y, candela.z}) > largest_intensity_cd) {
+        return "intensity_type must have intensities between 0 and 1e9.";
+    }
+    if (!is_finite(light.direction_radius) || light.direction_radius.w < 0.0F) {
+        return "direction_radius must be finite, with a radius of 0 or more.";
+    }
+    const bool spot = candela.w > 0.5F;
+    if (spot && !(std::abs(glm::length(glm::vec3(light.direction_radius)) - 1.0F) < 1e-3F)) {
+        return "direction_radius must have a direction of unit length.";
+    }
+    return is_finite(light.cone) ? nullptr : "cone must be finite.";
 }
 
 tl::expected<void, Error> validate(const FrameInputs& inputs, std::uint32_t slots) {
@@ -73,8 +100,16 @@ tl::expected<void, Error> validate(const FrameInputs& inputs, std::uint32_t slot
         (columns.x < grid.width || columns.y < grid.height || columns.x > 1024 || columns.y > 1024)) {
         return tl::unexpected(Error{"allocated_columns must be between the grid's width and height and 1024."});
     }
-    if (!std::isfinite(inputs.time_s)) {
-        return tl::unexpected(Error{"time_s must be finite."});
+    for (std::size_t i = 0; i < inputs.lights.size(); ++i) {
+        if (const char* const what = complaint(inputs.lights[i])) {
+            return tl::unexpected(Error{"lights[" + std::to_string(i) + "]." + what});
+        }
+    }
+    if (inputs.image_size.x == 0 || inputs.image_size.y == 0) {
+        return tl::unexpected(Error{"image_size must be at least 1 pixel in both directions."});
+    }
+    if (!(std::abs(inputs.time_s) <= latest_s)) {
+        return tl::unexpected(Error{"time_s must be between -1e10 and 1e10."});
     }
     if (inputs.frame_slot >= slots) {
         return tl::unexpected(Error{"frame_slot must be less than the feature's frames_in_flight."});

@@ -40,17 +40,20 @@ struct FrameInputs {
     Medium medium;
     Settings settings;
     Camera camera;
-    glm::uvec2 image_size{0}; ///< pixels; another size than the frame before's begins anew
+    glm::uvec2 image_size{0}; ///< pixels, at least 1; another size than the frame before's begins anew
     /// Columns of the grid's images, no fewer than the grid's: a grid that changes its size keeps its images. 0: as
     /// many.
     glm::uvec2 allocated_columns{0};
     std::optional<DepthSpan> visible_depth_m; ///< for the depth law `scene`
     std::optional<Sun> sun;
-    std::vector<gpu::GpuLight> lights; ///< what the buffer given to declare_frame_begin holds, in the same order
-    double time_s = 0.0;               ///< moves the noise with its wind
-    bool cut = false;                  ///< history and jitter start anew
-    std::uint32_t view = 0;            ///< which of the host's views this is, less than Feature::most_views
-    std::uint32_t frame_slot = 0;      ///< in [0, frames_in_flight): Executor::next_slot
+    /// What the buffer given to declare_frame_begin holds, in the same order; intensities in [0, 1e9] cd.
+    std::vector<gpu::GpuLight> lights;
+    /// Moves the noise with its wind, [-1e10, 1e10]: double precision then still holds a thousandth of a cell of noise
+    /// that moves by 100 cells a second.
+    double time_s = 0.0;
+    bool cut = false;             ///< history and jitter start anew
+    std::uint32_t view = 0;       ///< which of the host's views this is, less than Feature::most_views
+    std::uint32_t frame_slot = 0; ///< in [0, frames_in_flight): Executor::next_slot
     VkFormat color_format = VK_FORMAT_R16G16B16A16_SFLOAT; ///< of the image given to declare_after_opaque
 };
 
