@@ -16,9 +16,9 @@ enum class NoiseKind : std::uint8_t {
     perlin,
     /// 1 + amplitude * (n / m - 1), from two volumes that are baked once and repeat in every direction, their texels
     /// uniform on [0, 1]: the shape s, of 4 cells and 128 texels a side, and the detail t, of 4 cells and 32 texels.
-    /// c = max(0, (s - (1 - coverage)) / coverage), e = detail t, n = max(0, (c - e) / (1 - e)), and m is the mean of
-    /// n,
-    /// coverage / 2 (1 - detail / 2). So `coverage` is the part of space that has fog before detail takes its share.
+    /// c = max(0, (s - (1 - coverage)) / coverage), e = detail t, n = max(0, (c - e) / (1 - e)), and the mean of n is
+    /// m = coverage / 2 (1 - detail / 2). So `coverage` is the part of space that has fog before detail takes its
+    /// share.
     perlin_worley,
 };
 

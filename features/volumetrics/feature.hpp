@@ -1,11 +1,12 @@
 // Volumetric light as passes on a frame graph that the feature is given. Once a frame, in this order:
 //
 //   feature.begin_frame(inputs);
-//   feature.declare_frame_begin(graph, {.lights = lights});             // at the point frame_begin
-//   feature.declare_after_shadow_maps(graph, {cascades, parameters});   // at after_shadow_maps
-//   feature.declare_after_opaque(graph, {.color = color, .depth = depth}); // at after_opaque; `color` becomes the
-//   fogged version executor.submit(..., feature.bindings());
+//   feature.declare_frame_begin(graph, {.lights = lights});                // at the point frame_begin
+//   feature.declare_after_shadow_maps(graph, {cascades, parameters});      // at after_shadow_maps
+//   feature.declare_after_opaque(graph, {.color = color, .depth = depth}); // at after_opaque
+//   executor.submit(..., feature.bindings());
 //
+// `color` becomes the fogged version.
 // What a frame does not need is not declared, and `omissions` says why. Of several views in a frame each goes this way
 // by itself, with its own history; the order of views does not matter.
 #pragma once

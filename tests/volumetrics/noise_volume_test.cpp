@@ -133,7 +133,8 @@ TEST(NoiseVolumeTwin, HasTheMeanAndTheCoverageThatItsKeysSay) {
             std::printf("coverage %.1f, detail %.1f: mean %.3f, covered %.3f, largest %.2f of at most %.2f\n",
                         static_cast<double>(coverage), static_cast<double>(detail), sum, covered, largest,
                         noise_bound(noise));
-            EXPECT_NEAR(sum, 1.0, 0.1); // between texels the volumes are smoother, which small coverages feel
+            const bool feels_texels = coverage < 0.5F; // between them the volumes are smoother
+            EXPECT_NEAR(sum, feels_texels ? 0.935 : 1.0, feels_texels ? 0.025 : 0.01);
             EXPECT_LE(largest, noise_bound(noise));
             if (detail == 0.0F) {
                 EXPECT_NEAR(covered, coverage, 0.02);
