@@ -57,4 +57,7 @@ struct FrameInputs {
     VkFormat color_format = VK_FORMAT_R16G16B16A16_SFLOAT; ///< of the image given to declare_after_opaque
 };
 
+/// The first value outside its domain, medium and settings included. `slots`: the feature's frames in flight.
+[[nodiscard]] tl::expected<void, Error> validate(const FrameInputs& inputs, std::uint32_t slots);
+
 } // namespace tyndall::volumetrics
