@@ -27,8 +27,8 @@ function(tyndall_install_library name folder)
 endfunction()
 
 tyndall_install_library(rendergraph rendergraph
-                        PRIVATE_HEADERS stages.hpp *_state.hpp *_types.hpp assign.hpp queue_model.hpp search.hpp variants.hpp
-                                        verify_order.hpp verify_replay.hpp vulkan_names.hpp)
+                        PRIVATE_HEADERS stages.hpp *_state.hpp *_types.hpp assign.hpp formats.hpp queue_model.hpp search.hpp
+                                        variants.hpp verify_order.hpp verify_replay.hpp vulkan_names.hpp)
 tyndall_install_library(volumetrics features/volumetrics
                         PRIVATE_HEADERS reference *_state.hpp density_image.hpp dispatch.hpp host_buffers.hpp persistent_image.hpp
                                         pipelines.hpp shaders.hpp)
