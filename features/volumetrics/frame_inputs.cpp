@@ -9,7 +9,7 @@
 namespace tyndall::volumetrics {
 namespace {
 
-constexpr float largest_intensity_cd = 1e9F;
+constexpr float largest_intensity_cd = 1e12F;
 constexpr double latest_s = 1e10;
 
 bool is_finite(const glm::dmat4& m) {
@@ -30,12 +30,13 @@ bool is_finite(const glm::vec4& v) {
 /// What is wrong with the light; null: nothing.
 const char* complaint(const gpu::GpuLight& light) {
     const glm::vec4& candela = light.intensity_type;
-    if (!is_finite(light.position_range) || light.position_range.w <= 0.0F) {
-        return "position_range must be finite, with a range above 0.";
+    const glm::vec4& place = light.position_range;
+    if (!is_finite(glm::vec4(glm::vec3(place), 0.0F)) || !(place.w > 0.0F)) { // its range may be infinite
+        return "position_range must have a finite position, and a range above 0.";
     }
     if (!is_finite(candela) || std::min({candela.x, candela.y, candela.z}) < 0.0F ||
         std::max({candela.x, candela.y, candela.z}) > largest_intensity_cd) {
-        return "intensity_type must have intensities between 0 and 1e9.";
+        return "intensity_type must have intensities between 0 and 1e12.";
     }
     if (!is_finite(light.direction_radius) || light.direction_radius.w < 0.0F) {
         return "direction_radius must be finite, with a radius of 0 or more.";

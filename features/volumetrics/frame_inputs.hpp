@@ -46,7 +46,7 @@ struct FrameInputs {
     glm::uvec2 allocated_columns{0};
     std::optional<DepthSpan> visible_depth_m; ///< for the depth law `scene`
     std::optional<Sun> sun;
-    /// What the buffer given to declare_frame_begin holds, in the same order; intensities in [0, 1e9] cd.
+    /// What the buffer given to declare_frame_begin holds, in the same order; intensities in [0, 1e12] cd.
     std::vector<gpu::GpuLight> lights;
     /// Moves the noise with its wind, [-1e10, 1e10]: double precision then still holds a thousandth of a cell of noise
     /// that moves by 100 cells a second.

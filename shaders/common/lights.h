@@ -7,7 +7,7 @@
 TYNDALL_INTEROP_BEGIN
 
 struct GpuLight {
-    vec4 position_range;   // xyz render space, m; w: distance at which the light has faded to exactly 0, m, finite, > 0
+    vec4 position_range;   // xyz render space, m; w: > 0, where the light has faded to exactly 0, m, or infinity
     vec4 intensity_type;   // rgb candela; w: 0 point, 1 spot
     vec4 direction_radius; // xyz unit direction in which a spot's light travels; w: radius of the source, m
     vec4 cone; // x: angle scale, y: angle offset of KHR_lights_punctual (scale = 1 / max(0.001, cos inner - cos outer),

@@ -1,7 +1,5 @@
 // A steady frame of the executor allocates nothing on the heap. The device does nothing, so that no driver's
 // allocations are among those that are counted.
-#include <bit>
-
 #include "tests/rendergraph/counted_allocations.hpp"
 #include "tests/rendergraph/frames.hpp"
 #include "tests/rendergraph/random_graph.hpp"
@@ -12,22 +10,6 @@ namespace {
 
 constexpr std::uint32_t frames_to_settle = 10; ///< slots, both copies of histories, unused objects given back
 constexpr std::uint32_t frames_counted = 10;
-
-/// Made-up handles for every import.
-std::vector<ImportBinding> bindings_of(const GraphDesc& graph) {
-    std::vector<ImportBinding> out;
-    for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
-        if (graph.resources[resource].lifetime == ResourceLifetime::imported) {
-            const std::uint64_t handle = 0x3000 + resource;
-            out.push_back({.resource = resource,
-                           .image = std::bit_cast<VkImage>(handle),
-                           .buffer = std::bit_cast<VkBuffer>(handle),
-                           .wait_semaphore = std::bit_cast<VkSemaphore>(handle),
-                           .signal_semaphore = std::bit_cast<VkSemaphore>(handle)});
-        }
-    }
-    return out;
-}
 
 class Allocations : public testing::Test {
 protected:
@@ -44,7 +26,7 @@ protected:
             ADD_FAILURE() << to_text(plan.error());
             return 0;
         }
-        const std::vector<ImportBinding> imports = bindings_of(graph.desc);
+        const std::vector<ImportBinding> imports = made_up_bindings(graph.desc);
         std::size_t before = 0;
         for (std::uint32_t frame = 0; frame < frames_to_settle + frames_counted; ++frame) {
             if (frame == frames_to_settle) {

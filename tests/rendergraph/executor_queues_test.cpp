@@ -13,22 +13,6 @@ namespace {
 
 constexpr VkPipelineStageFlags2 everything = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 
-/// Bindings with made-up handles, and semaphores, for every import.
-std::vector<ImportBinding> bind_all(const GraphDesc& graph) {
-    std::vector<ImportBinding> out;
-    for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
-        if (graph.resources[resource].lifetime == ResourceLifetime::imported) {
-            const std::uint64_t handle = 0x3000 + resource;
-            out.push_back({.resource = resource,
-                           .image = std::bit_cast<VkImage>(handle),
-                           .buffer = std::bit_cast<VkBuffer>(handle),
-                           .wait_semaphore = std::bit_cast<VkSemaphore>(handle),
-                           .signal_semaphore = std::bit_cast<VkSemaphore>(handle)});
-        }
-    }
-    return out;
-}
-
 class Queues : public testing::Test {
 protected:
     Executor make(std::vector<QueueKind> kinds) {
@@ -37,7 +21,7 @@ protected:
         return std::move(*made);
     }
     void submit(Executor& executor, const DeclaredGraph& graph, const Plan& plan) {
-        const auto frame = executor.submit(graph.desc, plan, graph.callbacks, bind_all(graph.desc));
+        const auto frame = executor.submit(graph.desc, plan, graph.callbacks, made_up_bindings(graph.desc));
         ASSERT_TRUE(frame.has_value()) << frame.error().message;
     }
     [[nodiscard]] std::vector<const RecordedSubmit*> submits_of(std::uint32_t queue) const {
@@ -206,7 +190,7 @@ TEST_F(Queues, HostSemaphoresAreWaitedForAndSignalledWithTheFinalLayoutBefore) {
                             [&](const VkSemaphoreSubmitInfo& info) { return info.semaphore == host; }));
     EXPECT_EQ(device_.submits[0].commands.all_image_barriers().back().newLayout, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
 
-    std::vector<ImportBinding> without = bind_all(graph.desc);
+    std::vector<ImportBinding> without = made_up_bindings(graph.desc);
     without[0].wait_semaphore = VK_NULL_HANDLE;
     const auto refused = executor.submit(graph.desc, compiled(graph.desc, one_queue()), graph.callbacks, without);
     ASSERT_FALSE(refused.has_value());
@@ -321,7 +305,7 @@ TEST_F(Queues, EveryFailedCreationIsReportedAndLeavesNothing) {
             error = executor.error();
         } else {
             const Plan plan = compiled(graph.desc, one_queue());
-            const auto frame = executor->submit(graph.desc, plan, graph.callbacks, bind_all(graph.desc));
+            const auto frame = executor->submit(graph.desc, plan, graph.callbacks, made_up_bindings(graph.desc));
             succeeded = frame.has_value();
             error = succeeded ? ExecuteError{} : frame.error();
             device_.fail_at = -1;
@@ -340,7 +324,7 @@ TEST_F(Queues, ALostDeviceIsAReturnValueThatNamesTheLastPass) {
     const Plan plan = compiled(graph.desc, one_queue());
     submit(executor, graph, plan);
     device_.submit_result = VK_ERROR_DEVICE_LOST;
-    const auto lost = executor.submit(graph.desc, plan, graph.callbacks, bind_all(graph.desc));
+    const auto lost = executor.submit(graph.desc, plan, graph.callbacks, made_up_bindings(graph.desc));
     ASSERT_FALSE(lost.has_value());
     EXPECT_EQ(lost.error().kind, ExecuteError::Kind::device_lost);
     EXPECT_EQ(lost.error().result, VK_ERROR_DEVICE_LOST);

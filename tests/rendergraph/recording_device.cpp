@@ -203,4 +203,19 @@ ExecutorInfo RecordingDevice::info(std::vector<QueueKind> kinds) const {
     return out;
 }
 
+std::vector<ImportBinding> made_up_bindings(const GraphDesc& graph) {
+    std::vector<ImportBinding> out;
+    for (std::uint32_t resource = 0; resource < graph.resources.size(); ++resource) {
+        if (graph.resources[resource].lifetime == ResourceLifetime::imported) {
+            const std::uint64_t handle = 0x3000 + resource;
+            out.push_back({.resource = resource,
+                           .image = std::bit_cast<VkImage>(handle),
+                           .buffer = std::bit_cast<VkBuffer>(handle),
+                           .wait_semaphore = std::bit_cast<VkSemaphore>(handle),
+                           .signal_semaphore = std::bit_cast<VkSemaphore>(handle)});
+        }
+    }
+    return out;
+}
+
 } // namespace tyndall::rg::test

@@ -57,4 +57,7 @@ private:
     std::uint64_t handles_ = 0;
 };
 
+/// Bindings with made-up handles, and semaphores, for every import.
+[[nodiscard]] std::vector<ImportBinding> made_up_bindings(const GraphDesc& graph);
+
 } // namespace tyndall::rg::test

@@ -32,14 +32,16 @@ TEST_F(FrameInputsOf, LightsOutsideTheirDomainAreRefused) {
         return refusal([&](FrameInputs& inputs) { change(inputs.lights[1]); });
     };
     EXPECT_EQ(second([](gpu::GpuLight&) {}), "accepted");
-    const std::string place = "lights[1].position_range must be finite, with a range above 0.";
+    const std::string place = "lights[1].position_range must have a finite position, and a range above 0.";
     EXPECT_EQ(second([](gpu::GpuLight& light) { light.position_range.y = nan; }), place);
     EXPECT_EQ(second([](gpu::GpuLight& light) { light.position_range.w = 0.0F; }), place);
-    EXPECT_EQ(second([](gpu::GpuLight& light) { light.position_range.w = infinity; }), place);
-    const std::string intensity = "lights[1].intensity_type must have intensities between 0 and 1e9.";
+    EXPECT_EQ(second([](gpu::GpuLight& light) { light.position_range.w = nan; }), place);
+    EXPECT_EQ(second([](gpu::GpuLight& light) { light.position_range.x = infinity; }), place);
+    EXPECT_EQ(second([](gpu::GpuLight& light) { light.position_range.w = infinity; }), "accepted");
+    const std::string intensity = "lights[1].intensity_type must have intensities between 0 and 1e12.";
     EXPECT_EQ(second([](gpu::GpuLight& light) { light.intensity_type.y = -1.0F; }), intensity);
     EXPECT_EQ(second([](gpu::GpuLight& light) { light.intensity_type.z = nan; }), intensity);
-    EXPECT_EQ(second([](gpu::GpuLight& light) { light.intensity_type.x = 2e9F; }), intensity);
+    EXPECT_EQ(second([](gpu::GpuLight& light) { light.intensity_type.x = 2e12F; }), intensity);
     EXPECT_EQ(second([](gpu::GpuLight& light) { light.direction_radius.w = -0.1F; }),
               "lights[1].direction_radius must be finite, with a radius of 0 or more.");
     EXPECT_EQ(second([](gpu::GpuLight& light) { light.direction_radius.y = -2.0F; }),
