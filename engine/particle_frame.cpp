@@ -48,6 +48,20 @@ glm::vec4 normalized_plane(const glm::vec4& plane) {
     return length > 0.0F ? plane / length : glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
 }
 
+/// The share of light that particles send on toward the eye: a filter sends none of its own.
+glm::vec3 scattered_share(const ParticleEmitter& emitter) {
+    return emitter.blend == Blend::multiply ? glm::vec3(0.0F) : emitter.albedo;
+}
+
+/// What particles take of the light from behind where they are opaque, and give of the fog before them; w: the mean.
+glm::vec4 taken_share(const ParticleEmitter& emitter) {
+    if (emitter.blend == Blend::multiply) {
+        const glm::vec3 taken = glm::vec3(1.0F) - emitter.albedo;
+        return {taken, (taken.r + taken.g + taken.b) / 3.0F};
+    }
+    return glm::vec4(emitter.blend == Blend::premultiplied ? 1.0F : 0.0F);
+}
+
 } // namespace
 
 std::uint32_t particle_count(std::span<const ParticleEmitter> emitters) {
@@ -105,7 +119,9 @@ std::vector<gpu::GpuEmitter> make_gpu_emitters(const FrameView& view, std::span<
         out.box_start_radius = glm::vec4(emitter.box_half_extent_m, emitter.start_radius_m);
         out.velocity_end_radius = glm::vec4(emitter.velocity_m_s, emitter.end_radius_m);
         out.spread_opacity = glm::vec4(emitter.velocity_spread_m_s, emitter.opacity);
-        out.albedo_noise = glm::vec4(emitter.albedo, emitter.kind == ParticleKind::smoke ? smoke_noise : 0.0F);
+        out.albedo_noise =
+            glm::vec4(scattered_share(emitter), emitter.kind == ParticleKind::smoke ? smoke_noise : 0.0F);
+        out.taken = taken_share(emitter);
         out.forces = glm::vec4(emitter.buoyancy_m_s2, emitter.drag_per_s, emitter.turbulence_m_s,
                                static_cast<float>(1.0 / emitter.rate_per_s));
         for (int i = 0; i < 3; ++i) {

@@ -4,7 +4,10 @@ tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_sort_block
 tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_sort_exchange DEFINES STEP=1)
 tyndall_shader(tyndall_engine engine/particle_sort.comp NAME particle_merge_block DEFINES STEP=2)
 tyndall_shader(tyndall_engine engine/particle_split.comp NAME particle_split)
-tyndall_shader(tyndall_engine engine/particle.frag NAME particle_fragment)
+foreach(two_sources 0 1)
+    tyndall_shader(tyndall_engine engine/particle.frag NAME particle_fragment_t${two_sources}
+                   DEFINES TWO_SOURCES=${two_sources})
+endforeach()
 foreach(local_shadow 0 1)
     tyndall_shader(tyndall_engine engine/particle.vert NAME particle_scattering_p${local_shadow}
                    DEFINES SCATTERING=1 LOCAL_SHADOW=${local_shadow})

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <string>
 #include <utility>
 
 #include "spirv/particle_direct_s0_l00.h"
@@ -11,7 +12,8 @@
 #include "spirv/particle_direct_s1_l00.h"
 #include "spirv/particle_direct_s1_l10.h"
 #include "spirv/particle_direct_s1_l11.h"
-#include "spirv/particle_fragment.h"
+#include "spirv/particle_fragment_t0.h"
+#include "spirv/particle_fragment_t1.h"
 #include "spirv/particle_scattering_p0.h"
 #include "spirv/particle_scattering_p1.h"
 
@@ -25,18 +27,6 @@ constexpr VkDeviceSize command_bytes = sizeof(VkDrawIndirectCommand);
 
 /// Host-written before the frame is submitted, which makes it visible.
 constexpr rg::ImportDesc written_by_host{.read_only = true};
-
-/// out = source + (1 - source alpha) * destination.
-constexpr VkPipelineColorBlendAttachmentState premultiplied{.blendEnable = VK_TRUE,
-                                                            .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
-                                                            .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
-                                                            .colorBlendOp = VK_BLEND_OP_ADD,
-                                                            .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-                                                            .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
-                                                            .alphaBlendOp = VK_BLEND_OP_ADD,
-                                                            .colorWriteMask =
-                                                                VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                                                                VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT};
 
 /// Room for so many split depths, so that the buffer seldom grows.
 constexpr VkDeviceSize split_bytes(std::size_t count) {
@@ -106,6 +96,12 @@ tl::expected<ParticleSystem, Error> ParticleSystem::create(const Device& device,
     if (emitters.empty()) {
         return tl::unexpected(Error{"A particle system needs at least one emitter."});
     }
+    for (const ParticleEmitter& emitter : emitters) {
+        const std::string owner = "The particle emitter \"" + emitter.name + "\"";
+        if (auto fits = check_blend(owner, emitter.blend, device.info().dual_source_blending); !fits) {
+            return tl::unexpected(fits.error());
+        }
+    }
     auto passes = ParticlePasses::create(device, cache);
     if (!passes) {
         return tl::unexpected(passes.error());
@@ -146,14 +142,18 @@ tl::expected<void, Error> ParticleSystem::make_pipeline(std::size_t program, con
         particle_direct_s0_l00, particle_direct_s0_l10, particle_direct_s0_l11, particle_direct_s1_l00,
         particle_direct_s1_l10, particle_direct_s1_l11, particle_scattering_p0, particle_scattering_p1};
     const std::array<SpecializationConstant, 2> constants = {{{0, fog.airlight_features}, {1, fog.colored ? 1U : 0U}}};
+    const bool two_sources =
+        std::ranges::any_of(emitters_, [](const ParticleEmitter& emitter) { return emitter.blend == Blend::multiply; });
+    const std::span<const std::uint32_t> fragment[] = {particle_fragment_t0, particle_fragment_t1};
+    const VkPipelineColorBlendAttachmentState blend = laid_over(two_sources);
     auto pipeline = create_graphics_pipeline(*device_, cache_,
                                              {.layout = wanted.layout.get(),
                                               .vertex_spirv = vertex[program],
-                                              .fragment_spirv = particle_fragment,
+                                              .fragment_spirv = fragment[two_sources ? 1 : 0],
                                               .constants = constants,
                                               .color_formats = std::span(&color_format_, 1),
                                               .depth_format = depth_format_,
-                                              .blends = std::span(&premultiplied, 1),
+                                              .blends = std::span(&blend, 1),
                                               .depth_test = true,
                                               .depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL});
     if (!pipeline) {

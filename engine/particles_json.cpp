@@ -86,6 +86,16 @@ public:
             }
         }
     }
+    void read(const char* key, Blend& value) {
+        if (const Json* json = find(key, false)) {
+            const auto* word = json->get_ptr<const std::string*>();
+            if (const auto blend = word != nullptr ? to_blend(*word) : std::nullopt) {
+                value = *blend;
+            } else {
+                complain(path_ + "." + key + " must be " + std::string(blend_words) + ".");
+            }
+        }
+    }
     void read(const char* key, std::uint32_t& value) {
         if (const Json* json = find(key, false)) {
             const auto* whole = json->get_ptr<const Json::number_unsigned_t*>();
@@ -165,6 +175,7 @@ tl::expected<ParticleEmitter, Error> read_emitter(const Json& json, const std::s
     reader.read("end_radius_m", emitter.end_radius_m, length, true);
     reader.read("opacity", emitter.opacity, share, true);
     reader.read_vector("albedo", emitter.albedo, share);
+    reader.read("blend", emitter.blend);
     reader.read("seed", emitter.seed);
     reader.refuse_unknown_keys();
     if (!(emitter.start_radius_m > 0.0F || emitter.end_radius_m > 0.0F)) {

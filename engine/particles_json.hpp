@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 #include <tl/expected.hpp>
 
+#include "engine/blend.hpp"
 #include "engine/error.hpp"
 
 namespace tyndall::engine {
@@ -35,8 +36,9 @@ struct ParticleEmitter {
     float start_radius_m = 0.1F;         ///< of the billboard at birth, >= 0
     float end_radius_m = 0.1F;           ///< at the end of life, linear in between, >= 0; one of the two > 0
     float opacity = 1.0F;                ///< alpha at the middle of a billboard that is fully faded in, 0 to 1
-    glm::vec3 albedo{1.0F};              ///< share of light that is scattered, 0 to 1
-    std::uint32_t seed = 0;              ///< emitters with the same seed and rate make the same random choices
+    glm::vec3 albedo{1.0F};              ///< share of light that is scattered, 0 to 1; of a filter, that passes
+    Blend blend = Blend::premultiplied;
+    std::uint32_t seed = 0; ///< emitters with the same seed and rate make the same random choices
 };
 
 /// The most particles that all emitters of a file may have at once: 36 sorting passes.

@@ -123,6 +123,18 @@ tl::expected<Pipeline, Error> create_compute_pipeline(const Device& device, VkPi
     return Pipeline(device, pipeline);
 }
 
+VkPipelineColorBlendAttachmentState laid_over(bool two_sources) {
+    return {.blendEnable = VK_TRUE,
+            .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+            .dstColorBlendFactor = two_sources ? VK_BLEND_FACTOR_SRC1_COLOR : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+            .colorBlendOp = VK_BLEND_OP_ADD,
+            .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+            .dstAlphaBlendFactor = two_sources ? VK_BLEND_FACTOR_SRC1_ALPHA : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+            .alphaBlendOp = VK_BLEND_OP_ADD,
+            .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
+                              VK_COLOR_COMPONENT_A_BIT};
+}
+
 tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkPipelineCache cache,
                                                        const GraphicsPipelineInfo& info) {
     const ShaderModule vertex(device, info.vertex_spirv);

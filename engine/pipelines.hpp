@@ -90,6 +90,9 @@ struct SpecializationConstant {
 create_compute_pipeline(const Device& device, VkPipelineCache cache, VkPipelineLayout layout,
                         std::span<const std::uint32_t> spirv, std::span<const SpecializationConstant> constants = {});
 
+/// source + (1 - source alpha) * destination; with two sources source + second source * destination.
+[[nodiscard]] VkPipelineColorBlendAttachmentState laid_over(bool two_sources);
+
 struct GraphicsPipelineInfo {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     std::span<const std::uint32_t> vertex_spirv;

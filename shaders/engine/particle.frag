@@ -1,4 +1,7 @@
 // Coverage of a particle's billboard: a soft disc broken up by noise, fading where it comes close to a surface.
+//
+// TWO_SOURCES 1: what passes from behind differs between the channels, as it does where particles are filters. One
+// formula serves every way of blending, so that all particles are drawn in one order by one pipeline.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -13,8 +16,14 @@ layout(location = 2) flat in float noise_share;
 layout(location = 3) flat in vec2 depth_and_scale;
 layout(location = 4) flat in float alpha;
 layout(location = 5) in vec3 radiance;
+layout(location = 6) flat in vec4 taken;
 
-layout(location = 0) out vec4 color; // premultiplied
+#if TWO_SOURCES
+layout(location = 0, index = 0) out vec4 color;
+layout(location = 0, index = 1) out vec4 passes; // share of the light from behind
+#else
+layout(location = 0) out vec4 color; // of the light from behind passes 1 - its alpha
+#endif
 
 // Hashes of the four corners of a cell, each in [0, 1).
 vec4 cell_corners(ivec2 cell) {
@@ -50,5 +59,8 @@ void main() {
         coverage *= mix(1.0, smoothstep(0.25, 0.75, noise + 0.35 * body), noise_share);
     }
     float a = alpha * coverage;
-    color = vec4(radiance * a, a);
+    color = vec4(radiance, taken.w) * a;
+#if TWO_SOURCES
+    passes = 1.0 - a * taken;
+#endif
 }

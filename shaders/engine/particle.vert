@@ -40,6 +40,7 @@ layout(location = 2) flat out float noise_share;
 layout(location = 3) flat out vec2 depth_and_scale; // view depth, m; reciprocal of the depth over which it fades, 1/m
 layout(location = 4) flat out float alpha;
 layout(location = 5) out vec3 radiance;             // of the particle and of the fog before it, where it is opaque
+layout(location = 6) flat out vec4 taken;           // see GpuParticle
 
 // Smaller billboards than this (px) would fall between pixel centres and flicker: they are drawn this large and thinner.
 const float smallest_radius_px = 1.0;
@@ -67,6 +68,7 @@ void main() {
     noise_share = enlarged > 1.0 ? 0.0 : particle.look.w;
     depth_and_scale = vec2(depth_m, 1.0 / true_radius);
     alpha = particle.albedo_alpha.w / (enlarged * enlarged);
+    taken = particle.taken;
 
 #if SCATTERING
     // The corner itself is transparent: light half way to it stands for its quarter of the billboard.
@@ -83,7 +85,7 @@ void main() {
     path.render_start = render_from_view * path.start;
     path.render_ray = render_from_view * path.ray;
     ADD_AIRLIGHT(volume, airlights, path, fog)
-    radiance = particle.albedo_alpha.rgb * light * transmittance + fog;
+    radiance = particle.albedo_alpha.rgb * light * transmittance + taken.rgb * fog;
 #else
     radiance = particle.albedo_alpha.rgb * particle_light(particle.position_radius.xyz, depth_m);
 #endif

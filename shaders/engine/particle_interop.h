@@ -27,7 +27,8 @@ struct GpuEmitter {
     vec4 box_start_radius;    // xyz half extent, m; w: radius at birth, m
     vec4 velocity_end_radius; // xyz mean velocity, m/s; w: radius at the end of life, m
     vec4 spread_opacity;      // xyz half width of the velocity's spread, m/s; w: opacity
-    vec4 albedo_noise;        // rgb; w: share of the billboard's alpha that is noise
+    vec4 albedo_noise;        // rgb: what it scatters; w: share of the billboard's alpha that is noise
+    vec4 taken;               // as GpuParticle has it
     vec4 forces;              // x: buoyancy, m/s^2; y: drag, 1/s; z: turbulence, m/s; w: time between births, s
     vec4 wave_phase;          // xyz: phases of the turbulence's waves at the box's centre now; w: age of the newest, s
     uvec4 slots;              // x: first slot, y: slots, z: number of the newest birth mod 2^32, w: its slot
@@ -37,7 +38,9 @@ struct GpuEmitter {
 // A particle as the vertex shader pulls it.
 struct GpuParticle {
     vec4 position_radius; // render space, m
-    vec4 albedo_alpha;    // rgb; w: alpha at the middle of the billboard
+    vec4 albedo_alpha;    // rgb: what it scatters; w: alpha at the middle of the billboard
+    vec4 taken;           // rgb: at alpha 1 it takes this share of the light from behind and shows this share of the fog
+                          // before it; w: the mean, for the picture's alpha
     vec4 look;            // x: rotation, rad; y, z: offset into the noise; w: share of noise
 };
 

@@ -98,6 +98,7 @@ void main() {
     }
     particles[index].position_radius = vec4(position, radius);
     particles[index].albedo_alpha = vec4(emitter.albedo_noise.rgb, alpha);
+    particles[index].taken = emitter.taken;
     particles[index].look = vec4(6.2831853 * r1.w + (r0.w - 0.5) * age_s, 64.0 * r1.xy, emitter.albedo_noise.w);
     keys[index] = uvec2(drawn ? particle_depth_key(depth_m) : particle_not_drawn, index);
 }

@@ -1,5 +1,6 @@
 // What the particle file may say, and the sentence for each mistake.
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ std::string error_of(const std::string& text) {
 TEST(ParticlesJson, ReadsEveryKey) {
     const auto parsed = parse_particles_json(file(
         R"(, "box_half_extent_m": [0.5, 0, 2], "velocity_m_s": [1, -2, 3], "velocity_spread_m_s": [4, 5, 6],)"
-        R"( "buoyancy_m_s2": -0.5, "drag_per_s": 0.25, "turbulence_m_s": 0.125, "albedo": [0.5, 1, 0], "seed": 7)"));
+        R"( "buoyancy_m_s2": -0.5, "drag_per_s": 0.25, "turbulence_m_s": 0.125, "albedo": [0.5, 1, 0], "seed": 7, "blend": "multiply")"));
     ASSERT_TRUE(parsed.has_value()) << parsed.error().message;
     ASSERT_EQ(parsed->size(), 1U);
     const ParticleEmitter& emitter = parsed->front();
@@ -45,6 +46,7 @@ TEST(ParticlesJson, ReadsEveryKey) {
     EXPECT_EQ(emitter.opacity, 0.5F);
     EXPECT_EQ(emitter.albedo, glm::vec3(0.5F, 1.0F, 0.0F));
     EXPECT_EQ(emitter.seed, 7U);
+    EXPECT_EQ(emitter.blend, Blend::multiply);
     EXPECT_EQ(particle_slots(emitter), 11U);
 }
 
@@ -58,6 +60,7 @@ TEST(ParticlesJson, OptionalKeysHaveDefaultsAndTheSeedIsTheIndex) {
     EXPECT_EQ((*parsed)[0].seed, 0U);
     EXPECT_EQ((*parsed)[1].seed, 1U);
     EXPECT_EQ((*parsed)[1].albedo, glm::vec3(1.0F));
+    EXPECT_EQ((*parsed)[1].blend, Blend::premultiplied);
     EXPECT_EQ(particle_count(*parsed), 22U);
     EXPECT_EQ(particle_key_count(22), 32U);
 }
@@ -100,6 +103,8 @@ TEST(ParticlesJson, EachMistakeNamesItsKey) {
         {file(R"(, "turbulence_m_s": true)"), "emitters[0].turbulence_m_s must be a number."},
         {file(R"(, "box_half_extent_m": [0, -1, 0])"),
          "emitters[0].box_half_extent_m[1] is -1, which is not from 0 to 1e+06."},
+        {file(R"(, "blend": "screen")"), "emitters[0].blend must be \"premultiplied\", \"additive\" or \"multiply\"."},
+        {file(R"(, "blend": 1)"), "emitters[0].blend must be \"premultiplied\", \"additive\" or \"multiply\"."},
         {long_life, "emitters[0].rate_per_s times lifetime_s makes 1e+06 particles, more than 262143."},
         {point, "emitters[0].end_radius_m is 0 and so is start_radius_m: one of them must be more."},
     };
@@ -125,6 +130,28 @@ TEST(ParticlesJson, ImpossibleValuesOfRequiredKeys) {
               "emitters[0].position_m[2] is 1e+30, which is not from -1e+06 to 1e+06.");
     EXPECT_EQ(error_of(with("position_m", "[0, 0, 1e999]")),
               "The particle file holds a number that is too large for double precision.");
+}
+
+TEST(ParticlesJson, ReadsTheWaysOfBlending) {
+    for (const auto& [word, blend] : {std::pair("premultiplied", Blend::premultiplied),
+                                      {"additive", Blend::additive},
+                                      {"multiply", Blend::multiply}}) {
+        const auto parsed = parse_particles_json(file(R"(, "blend": ")" + std::string(word) + "\""));
+        ASSERT_TRUE(parsed.has_value()) << parsed.error().message;
+        EXPECT_EQ(parsed->front().blend, blend);
+    }
+}
+
+TEST(Blend, OnlyMultiplyingNeedsASecondSource) {
+    for (const Blend blend : {Blend::premultiplied, Blend::additive, Blend::multiply}) {
+        EXPECT_TRUE(check_blend("It", blend, true));
+    }
+    EXPECT_TRUE(check_blend("It", Blend::premultiplied, false));
+    EXPECT_TRUE(check_blend("It", Blend::additive, false));
+    const auto refused = check_blend("The particle emitter \"soot\"", Blend::multiply, false);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message,
+              "The particle emitter \"soot\" is blended by \"multiply\", which needs a device with dualSrcBlend.");
 }
 
 TEST(ParticlesJson, NamesAreUniqueAndTheTotalIsBounded) {
