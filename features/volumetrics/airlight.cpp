@@ -16,8 +16,10 @@ constexpr double hysteresis = 1.5;
 constexpr double dim_part = 1e-2;
 
 /// Of the optical depth between two points.
-bool has_closed_form(const Medium& medium) {
-    return medium.noise.amplitude == 0.0F && medium.volumes.empty() && !medium.map.texels;
+bool has_closed_form(const FrameInputs& frame) {
+    const Medium& medium = frame.medium;
+    return medium.noise.amplitude == 0.0F && medium.volumes.empty() && !medium.map.texels &&
+           extinction_bound(frame.fog_particles) == 0.0F;
 }
 
 struct Candidate {
@@ -114,8 +116,8 @@ AirlightChoice choose_airlights(const FrameInputs& frame, const std::optional<Fr
     if (most == 0) {
         return {{}, "airlight.max_lights is 0"};
     }
-    if (!has_closed_form(frame.medium)) {
-        return {{}, "only froxels know noise, a density map and local volumes"};
+    if (!has_closed_form(frame)) {
+        return {{}, "only froxels know noise, a density map, local volumes and particles"};
     }
     if (is_colored(frame.medium)) {
         return {{}, "only froxels know extinction of each channel"};

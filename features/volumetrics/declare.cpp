@@ -84,14 +84,26 @@ void Feature::State::declare_density(rg::GraphBuilder& graph) {
     for (Texture& texture : textures) { // every declared binding must be written
         texture = texture.image.valid() ? texture : any;
     }
-    pass.executes([=, parameters = frame->parameter_buffer](PassContext& ctx) {
-        std::array<Binding, 3 + textures.size()> bindings{ctx.uniform(0, parameters), ctx.storage(1, density)};
+    const rg::Buffer particles = frame->particle_buffer;
+    if (particles.valid()) {
+        pass.reads(particles, Access::storage_compute)
+            .reads(frame->particle_masks, Access::storage_compute)
+            .reads(frame->particle_cluster_parameters, Access::uniform_compute);
+    }
+    pass.executes([=, parameters = frame->parameter_buffer, masks = frame->particle_masks,
+                   clusters = frame->particle_cluster_parameters](PassContext& ctx) {
+        std::array<Binding, 6 + textures.size()> bindings{ctx.uniform(0, parameters), ctx.storage(1, density)};
         std::size_t count = 2;
         if (emitted.valid()) {
             bindings[count++] = ctx.storage(2, emitted);
         }
         for (std::uint32_t i = 0; i < textures.size() && any.image.valid(); ++i) {
             bindings[count++] = ctx.sampled(3 + i, textures[i].image, textures[i].sampler);
+        }
+        if (particles.valid()) {
+            bindings[count++] = ctx.storage(10, particles);
+            bindings[count++] = ctx.storage(11, masks);
+            bindings[count++] = ctx.uniform(12, clusters);
         }
         run(ctx, dispatch, std::span(bindings).first(count));
     });
@@ -100,17 +112,19 @@ void Feature::State::declare_density(rg::GraphBuilder& graph) {
 
 void Feature::State::declare_clustering(rg::GraphBuilder& graph) {
     const gpu::LightClusters& c = frame->cluster_parameters;
-    const std::uint32_t words = c.counts.x * c.counts.y * c.counts.z * c.block.w;
+    const std::uint32_t words_of_slab = c.counts.x * c.counts.y * c.block.w;
     const HostBuffers::Slot& slot = host_buffers->slot(frame->inputs.frame_slot);
     const rg::Buffer parameters = graph.import_buffer(named("light cluster parameters"),
                                                       {.size_bytes = sizeof(gpu::LightClusters)}, {.read_only = true});
     graph.share_between_queues(parameters);
     import_bindings.push_back({.resource = parameters.resource, .buffer = slot.clusters});
-    rg::Buffer masks = graph.create_buffer(named("light cluster masks"), {.size_bytes = VkDeviceSize{words} * 4});
+    rg::Buffer masks =
+        graph.create_buffer(named("light cluster masks"), {.size_bytes = VkDeviceSize{words_of_slab} * c.counts.z * 4});
     const std::uint32_t compact_count = std::min<std::uint32_t>(c.grid.w, TYNDALL_COMPACT_LIGHT_COUNT);
     rg::Buffer compact = graph.create_buffer(named("compact lights"),
                                              {.size_bytes = sizeof(gpu::GpuLight) * TYNDALL_COMPACT_LIGHT_COUNT});
-    const Dispatch dispatch = covering(frame->light_clustering, {64, 1, 1}, std::max(words, compact_count), 1, 1);
+    const Dispatch dispatch =
+        covering(frame->light_clustering, {64, 1, 1}, std::max(words_of_slab, compact_count), c.counts.z, 1);
     auto pass = graph.add_pass(named("light clustering"), PassKind::compute);
     pass.on_queue(wish())
         .reads(frame->parameter_buffer, Access::uniform_compute)
@@ -144,7 +158,7 @@ tl::expected<void, Error> Feature::State::declare_esm(rg::GraphBuilder& graph, c
     const auto texels = static_cast<float>(size);
     const auto source_texels = static_cast<float>(source_size);
     frame->parameters.esm_size = glm::vec4(texels, 1.0F / texels, source_texels, 1.0F / source_texels);
-    host_buffers->write(frame->inputs.frame_slot, frame->parameters);
+    write_parameters();
     if (frame->inputs.settings.visibility.method != SunVisibility::prefiltered) {
         omit("ESM downsample and blur", "fog looks the sun up in the cascades themselves");
         frame->shadow_map = shadow.cascades;

@@ -24,6 +24,10 @@ double farthest_m(const FrameInputs& frame) {
         const double depth_m = view_depth_m(frame.camera, glm::dvec3(volume.center_m) - frame.camera.origin_m);
         farthest = std::max(farthest, depth_m + glm::length(glm::dvec3(volume.half_size_m)));
     }
+    for (const FogParticle& particle : frame.fog_particles) {
+        const double depth_m = view_depth_m(frame.camera, glm::dvec3(particle.position_m));
+        farthest = std::max(farthest, depth_m + static_cast<double>(particle.radius_m));
+    }
     return farthest;
 }
 

@@ -87,13 +87,23 @@ tl::expected<void, Error> Feature::State::prepare_programs() {
         baked,
         medium.map.texels != nullptr,
         has_grids};
-    auto density =
-        pipelines.compute(density_injection_shader(frame->inputs.settings.storage, frame->emission, textures),
-                          row_group(grid.width), std::span(media).first(textures ? 10 : 7));
+    auto density = pipelines.compute(
+        density_injection_shader(frame->inputs.settings.storage, frame->emission, textures, !frame->particles.empty()),
+        row_group(grid.width), std::span(media).first(textures ? 10 : 7));
     if (!density) {
         return tl::unexpected(density.error());
     }
     frame->density_injection = *density;
+    if (!frame->particles.empty()) {
+        if (auto made = make_particle_buffers(); !made) {
+            return made;
+        }
+        auto clustering = pipelines.compute(fog_particle_clustering_shader(), {64, 1, 1});
+        if (!clustering) {
+            return tl::unexpected(clustering.error());
+        }
+        frame->particle_clustering = *clustering;
+    }
     if (is_clustered(frame->lights)) {
         auto clustering = pipelines.compute(light_clustering_shader(), {64, 1, 1});
         if (!clustering) {
@@ -146,8 +156,9 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
     std::unique_ptr<State>& place = views_[given.view];
     if (!place) {
         const FeatureInfo& info = shared_->info;
-        auto buffers = HostBuffers::create(*info.vk, info.device, info.memory_properties, info.frames_in_flight,
-                                           info.queue_families);
+        auto buffers = HostBuffers::create(
+            *info.vk, info.device, info.memory_properties, info.frames_in_flight, info.queue_families,
+            {.size_bytes = sizeof(gpu::VolumetricParameters), .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT});
         if (!buffers) {
             return tl::unexpected(buffers.error());
         }
@@ -160,7 +171,7 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
     if (auto valid = validate(given, state.host_buffers->slot_count()); !valid) {
         return valid;
     }
-    if (is_empty(given.medium)) {
+    if (is_empty(given.medium) && extinction_bound(given.fog_particles) <= 0.0F) {
         state.before.reset();
         state.omit("all volumetric passes", "the medium is empty");
         return {};
@@ -197,6 +208,9 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
     frame.airlight_features = airlight_features(inputs, airlight);
     const auto light_count = static_cast<std::uint32_t>(inputs.lights.size());
     frame.cluster_parameters = light_clusters(inputs.settings.grid, light_count, frame.parameters.volume.law);
+    frame.particles = gpu_fog_particles(inputs.fog_particles, frame.parameters.density_scale.x);
+    frame.particle_clusters = light_clusters(inputs.settings.grid, static_cast<std::uint32_t>(frame.particles.size()),
+                                             frame.parameters.volume.law);
     frame.depth_curve = inputs.settings.grid.law == DepthLawKind::curve;
     frame.emission = emission_bound(inputs.medium) > 0.0F;
     frame.sun_shadow = shines(inputs) && inputs.sun->casts_shadows;
@@ -219,8 +233,12 @@ tl::expected<void, Error> Feature::begin_frame(const FrameInputs& given) {
         state.frame.reset();
         return made;
     }
-    state.host_buffers->write(inputs.frame_slot, state.frame->parameters);
+    state.write_parameters();
     state.host_buffers->write(inputs.frame_slot, state.frame->cluster_parameters);
+    if (!state.frame->particles.empty()) {
+        state.particle_buffers->write(inputs.frame_slot, std::as_bytes(std::span(state.frame->particles)));
+        state.particle_buffers->write(inputs.frame_slot, state.frame->particle_clusters);
+    }
     state.before = memory_of(state.frame->inputs, state.frame->parameters);
     state.before->airlights = airlight.lights;
     return {};
@@ -242,7 +260,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     frame.parameter_buffer = graph.import_buffer(
         state.named("volumetric parameters"), {.size_bytes = sizeof(gpu::VolumetricParameters)}, {.read_only = true});
     graph.share_between_queues(frame.parameter_buffer);
-    state.import_bindings.push_back({.resource = frame.parameter_buffer.resource, .buffer = slot.parameters});
+    state.import_bindings.push_back({.resource = frame.parameter_buffer.resource, .buffer = slot.data});
 
     if (frame.inputs.medium.noise.amplitude <= 0.0F) {
         state.omit("density noise", "its amplitude is 0");
@@ -260,6 +278,7 @@ tl::expected<void, Error> Feature::declare_frame_begin(rg::GraphBuilder& graph, 
     if (!frame.colored) {
         state.omit("extinction of each channel", "every medium is grey");
     }
+    state.declare_particles(graph);
     state.declare_density(graph);
     if (is_clustered(frame.lights)) {
         state.declare_clustering(graph);

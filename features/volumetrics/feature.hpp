@@ -109,7 +109,7 @@ public:
     /// error the view has no fog in this frame: the declare functions do nothing.
     [[nodiscard]] tl::expected<void, Error> begin_frame(const FrameInputs& inputs);
 
-    /// Density injection and light clustering.
+    /// Clustering of fog particles, density injection and light clustering.
     [[nodiscard]] tl::expected<void, Error>
     declare_frame_begin(rg::GraphBuilder& graph, const FrameBeginResources& resources, std::uint32_t view = 0);
     /// ESM downsample, blur x, blur y, froxel lighting, accumulation.

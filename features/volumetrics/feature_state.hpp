@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "features/volumetrics/airlight.hpp"
 #include "features/volumetrics/density_image.hpp"
@@ -18,6 +19,8 @@ struct FrameState {
     FrameInputs inputs; ///< its lights as the froxels see them
     gpu::VolumetricParameters parameters{};
     gpu::LightClusters cluster_parameters{};
+    std::vector<gpu::GpuFogParticle> particles; ///< of fog
+    gpu::LightClusters particle_clusters{};
     bool cold = true;
     bool camera_stands = false; ///< since the frame before
     bool sun_shadow = false;
@@ -32,12 +35,16 @@ struct FrameState {
     std::uint32_t airlight_features = 0;           ///< see shaders/common/airlight.h
     Program density_injection;
     Program light_clustering;
+    Program particle_clustering;
     Program fog_on_opaque;
 
     std::array<rg::Image, 2> noise; ///< shape and detail, where the noise is made of them
     rg::Image density_map;
     std::array<rg::Image, LocalVolume::most_grids> grids;
     rg::Buffer parameter_buffer;
+    rg::Buffer particle_buffer; ///< invalid where there is none, as the next two
+    rg::Buffer particle_masks;
+    rg::Buffer particle_cluster_parameters;
     rg::Buffer light_buffer;
     rg::Buffer compact_lights; ///< its first lights, for binding as uniforms
     ShadowResources shadow;
@@ -80,12 +87,17 @@ struct Feature::State {
     /// Creates the frame's pipelines that are known before anything is declared.
     [[nodiscard]] tl::expected<void, Error> prepare_programs();
     void tell(const AirlightChoice& airlight, std::size_t light_count);
+    void write_parameters() {
+        host_buffers->write(frame->inputs.frame_slot, std::as_bytes(std::span(&frame->parameters, 1)));
+    }
     void omit(std::string what, std::string why) { omissions.push_back({std::move(what), std::move(why)}); }
 
     // Passes, in order; declare.cpp.
     void declare_noise(rg::GraphBuilder& graph); ///< declare_noise.cpp
     [[nodiscard]] tl::expected<void, Error> make_textures();
     void declare_textures(rg::GraphBuilder& graph); ///< declare_textures.cpp
+    [[nodiscard]] tl::expected<void, Error> make_particle_buffers();
+    void declare_particles(rg::GraphBuilder& graph); ///< declare_particles.cpp
     void declare_density(rg::GraphBuilder& graph);
     void declare_clustering(rg::GraphBuilder& graph);
     [[nodiscard]] tl::expected<void, Error> declare_esm(rg::GraphBuilder& graph, const ShadowResources& shadow);
@@ -104,7 +116,9 @@ struct Feature::State {
     VkSampler linear;
     VkSampler nearest;
     Pipelines& pipelines;
-    std::unique_ptr<HostBuffers> host_buffers;
+    std::unique_ptr<HostBuffers> host_buffers; ///< gpu::VolumetricParameters, clusters of lights
+    std::unique_ptr<HostBuffers>
+        particle_buffers; ///< gpu::GpuFogParticle and their clusters; null until they are needed
 
     std::optional<FrameState> frame;   ///< empty where there is no fog
     std::optional<FrameMemory> before; ///< the last frame that had fog

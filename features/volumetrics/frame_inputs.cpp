@@ -88,6 +88,9 @@ tl::expected<void, Error> validate(const FrameInputs& inputs, std::uint32_t slot
             return tl::unexpected(Error{"lights[" + std::to_string(i) + "]." + what});
         }
     }
+    if (auto valid = validate(inputs.fog_particles); !valid) {
+        return valid;
+    }
     if (inputs.image_size.x == 0 || inputs.image_size.y == 0) {
         return tl::unexpected(Error{"image_size must be at least 1 pixel in both directions."});
     }

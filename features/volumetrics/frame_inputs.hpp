@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "features/volumetrics/fog_particle.hpp"
 #include "features/volumetrics/settings.hpp"
 #include "shaders/common/lights.h"
 
@@ -48,6 +49,8 @@ struct FrameInputs {
     std::optional<Sun> sun;
     /// What the buffer given to declare_frame_begin holds, in the same order; intensities in [0, 1e12] cd.
     std::vector<gpu::GpuLight> lights;
+    /// Added to the fog after the medium's volumes and before its noise, in any order.
+    std::vector<FogParticle> fog_particles;
     /// Moves the noise with its wind, [-1e10, 1e10]: double precision then still holds a thousandth of a cell of noise
     /// that moves by 100 cells a second.
     double time_s = 0.0;

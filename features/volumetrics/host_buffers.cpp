@@ -8,7 +8,7 @@ namespace tyndall::volumetrics {
 namespace {
 
 Error buffer_error(VkResult result) {
-    return {"The device refused the uniform buffers of the volumetrics (VkResult " +
+    return {"The device refused the host-written buffers of the volumetrics (VkResult " +
             std::to_string(static_cast<int>(result)) + ")."};
 }
 
@@ -24,50 +24,51 @@ int host_memory_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32
     return -1;
 }
 
-VkResult HostBuffers::make_buffer(VkDeviceSize size_bytes, std::span<const std::uint32_t> queue_families,
+VkResult HostBuffers::make_buffer(const DataInfo& info, std::span<const std::uint32_t> queue_families,
                                   VkBuffer& buffer) {
     const bool shared = queue_families.size() > 1;
-    const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                  .size = size_bytes,
-                                  .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-                                  .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
-                                  .queueFamilyIndexCount = static_cast<std::uint32_t>(queue_families.size()),
-                                  .pQueueFamilyIndices = queue_families.data()};
-    return vk_->CreateBuffer(device_, &info, nullptr, &buffer);
+    const VkBufferCreateInfo create{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                    .size = info.size_bytes,
+                                    .usage = info.usage,
+                                    .sharingMode = shared ? VK_SHARING_MODE_CONCURRENT : VK_SHARING_MODE_EXCLUSIVE,
+                                    .queueFamilyIndexCount = static_cast<std::uint32_t>(queue_families.size()),
+                                    .pQueueFamilyIndices = queue_families.data()};
+    return vk_->CreateBuffer(device_, &create, nullptr, &buffer);
 }
 
-tl::expected<std::unique_ptr<HostBuffers>, Error> HostBuffers::create(const rg::DeviceTable& vk, VkDevice device,
-                                                                      const VkPhysicalDeviceMemoryProperties& memory,
-                                                                      std::uint32_t slots,
-                                                                      std::span<const std::uint32_t> queue_families) {
+tl::expected<std::unique_ptr<HostBuffers>, Error>
+HostBuffers::create(const rg::DeviceTable& vk, VkDevice device, const VkPhysicalDeviceMemoryProperties& memory,
+                    std::uint32_t slots, std::span<const std::uint32_t> queue_families, const DataInfo& data) {
     std::unique_ptr<HostBuffers> self(new HostBuffers(vk, device));
     self->slots_.resize(slots);
     VkResult result = VK_SUCCESS;
     VkDeviceSize alignment = 1;
-    VkDeviceSize largest = 0;
+    VkDeviceSize largest[2] = {}; // of data, of clusters
     std::uint32_t type_bits = ~0U;
+    const DataInfo infos[] = {data, {sizeof(gpu::LightClusters), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT}};
     for (Slot& slot : self->slots_) {
-        for (const bool parameters : {true, false}) {
-            VkBuffer& buffer = parameters ? slot.parameters : slot.clusters;
-            result = self->make_buffer(parameters ? sizeof(gpu::VolumetricParameters) : sizeof(gpu::LightClusters),
-                                       queue_families, buffer);
+        for (const int which : {0, 1}) {
+            VkBuffer& buffer = which == 0 ? slot.data : slot.clusters;
+            result = self->make_buffer(infos[which], queue_families, buffer);
             if (result != VK_SUCCESS) {
                 return tl::unexpected(buffer_error(result));
             }
             VkMemoryRequirements needs{};
             vk.GetBufferMemoryRequirements(device, buffer, &needs);
             alignment = std::max(alignment, needs.alignment);
-            largest = std::max(largest, needs.size);
+            largest[which] = std::max(largest[which], needs.size);
             type_bits &= needs.memoryTypeBits;
         }
     }
     const int type = host_memory_type(memory, type_bits);
     if (type < 0) {
-        return tl::unexpected(Error{"The device has no coherent host-visible memory for uniform buffers."});
+        return tl::unexpected(Error{"The device has no coherent host-visible memory for the volumetrics."});
     }
-    self->stride_bytes_ = (largest + alignment - 1) / alignment * alignment;
+    const auto aligned = [&](VkDeviceSize bytes) { return (bytes + alignment - 1) / alignment * alignment; };
+    self->clusters_bytes_ = aligned(largest[0]);
+    self->stride_bytes_ = self->clusters_bytes_ + aligned(largest[1]);
     const VkMemoryAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                        .allocationSize = self->stride_bytes_ * 2 * slots,
+                                        .allocationSize = self->stride_bytes_ * slots,
                                         .memoryTypeIndex = static_cast<std::uint32_t>(type)};
     result = vk.AllocateMemory(device, &allocate, nullptr, &self->memory_);
     if (result != VK_SUCCESS) {
@@ -75,13 +76,14 @@ tl::expected<std::unique_ptr<HostBuffers>, Error> HostBuffers::create(const rg::
     }
     VkDeviceSize offset = 0;
     for (const Slot& slot : self->slots_) {
-        for (VkBuffer buffer : {slot.parameters, slot.clusters}) {
-            result = vk.BindBufferMemory(device, buffer, self->memory_, offset);
+        for (const bool clusters : {false, true}) {
+            result = vk.BindBufferMemory(device, clusters ? slot.clusters : slot.data, self->memory_,
+                                         offset + (clusters ? self->clusters_bytes_ : 0));
             if (result != VK_SUCCESS) {
                 return tl::unexpected(buffer_error(result));
             }
-            offset += self->stride_bytes_;
         }
+        offset += self->stride_bytes_;
     }
     void* mapped = nullptr;
     result = vk.MapMemory(device, self->memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
@@ -94,18 +96,18 @@ tl::expected<std::unique_ptr<HostBuffers>, Error> HostBuffers::create(const rg::
 
 HostBuffers::~HostBuffers() {
     for (const Slot& slot : slots_) {
-        vk_->DestroyBuffer(device_, slot.parameters, nullptr);
+        vk_->DestroyBuffer(device_, slot.data, nullptr);
         vk_->DestroyBuffer(device_, slot.clusters, nullptr);
     }
     vk_->FreeMemory(device_, memory_, nullptr);
 }
 
-void HostBuffers::write(std::uint32_t slot, const gpu::VolumetricParameters& parameters) {
-    std::memcpy(mapped_ + stride_bytes_ * (2 * slot), &parameters, sizeof parameters);
+void HostBuffers::write(std::uint32_t slot, std::span<const std::byte> data) {
+    std::memcpy(mapped_ + stride_bytes_ * slot, data.data(), data.size());
 }
 
 void HostBuffers::write(std::uint32_t slot, const gpu::LightClusters& clusters) {
-    std::memcpy(mapped_ + stride_bytes_ * (2 * slot + 1), &clusters, sizeof clusters);
+    std::memcpy(mapped_ + stride_bytes_ * slot + clusters_bytes_, &clusters, sizeof clusters);
 }
 
 } // namespace tyndall::volumetrics

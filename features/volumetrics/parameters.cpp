@@ -321,7 +321,8 @@ gpu::VolumetricParameters volumetric_parameters(const FrameInputs& frame, const 
     const float radiance_scale = radiance_scale_for(frame, before);
     // The densest at a quarter of fp16's largest, noise of octaves at most doubling it; the thinnest 1e11 times below.
     const float largest = 32768.0F / std::max(2.0F, static_cast<float>(noise_bound(medium.noise)));
-    const float density_scale = largest / std::max(extinction_bound(medium), 1e-20F);
+    const float density_scale =
+        largest / std::max(extinction_bound(medium) + extinction_bound(frame.fog_particles), 1e-20F);
     const float emission_scale = largest / std::max(emission_bound(medium), 1e-20F);
     const glm::dmat3 render_from_view = glm::transpose(glm::dmat3(frame.camera.view_from_render));
 

@@ -1,6 +1,7 @@
 #include "features/volumetrics/shaders.hpp"
 
 #include <array>
+#include <iterator>
 
 #include "spirv/accumulation_fp16_c0_e0_m0.h"
 #include "spirv/accumulation_fp16_c0_e0_m1.h"
@@ -18,19 +19,28 @@
 #include "spirv/accumulation_fp32_c1_e0_m1.h"
 #include "spirv/accumulation_fp32_c1_e1_m0.h"
 #include "spirv/accumulation_fp32_c1_e1_m1.h"
-#include "spirv/density_injection_fp16_m0_t0.h"
-#include "spirv/density_injection_fp16_m0_t1.h"
-#include "spirv/density_injection_fp16_m1_t0.h"
-#include "spirv/density_injection_fp16_m1_t1.h"
-#include "spirv/density_injection_fp32_m0_t0.h"
-#include "spirv/density_injection_fp32_m0_t1.h"
-#include "spirv/density_injection_fp32_m1_t0.h"
-#include "spirv/density_injection_fp32_m1_t1.h"
+#include "spirv/density_injection_fp16_m0_t0_p0.h"
+#include "spirv/density_injection_fp16_m0_t0_p1.h"
+#include "spirv/density_injection_fp16_m0_t1_p0.h"
+#include "spirv/density_injection_fp16_m0_t1_p1.h"
+#include "spirv/density_injection_fp16_m1_t0_p0.h"
+#include "spirv/density_injection_fp16_m1_t0_p1.h"
+#include "spirv/density_injection_fp16_m1_t1_p0.h"
+#include "spirv/density_injection_fp16_m1_t1_p1.h"
+#include "spirv/density_injection_fp32_m0_t0_p0.h"
+#include "spirv/density_injection_fp32_m0_t0_p1.h"
+#include "spirv/density_injection_fp32_m0_t1_p0.h"
+#include "spirv/density_injection_fp32_m0_t1_p1.h"
+#include "spirv/density_injection_fp32_m1_t0_p0.h"
+#include "spirv/density_injection_fp32_m1_t0_p1.h"
+#include "spirv/density_injection_fp32_m1_t1_p0.h"
+#include "spirv/density_injection_fp32_m1_t1_p1.h"
 #include "spirv/esm_blur.h"
 #include "spirv/esm_downsample.h"
 #include "spirv/fog_on_opaque_colored.h"
 #include "spirv/fog_on_opaque_p0.h"
 #include "spirv/fog_on_opaque_p1.h"
+#include "spirv/fog_particle_clustering.h"
 #include "spirv/froxel_lighting_fp16_s0_l00_h0.h"
 #include "spirv/froxel_lighting_fp16_s0_l00_h1.h"
 #include "spirv/froxel_lighting_fp16_s0_l10_h0.h"
@@ -99,13 +109,31 @@ constexpr VkDescriptorType sampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType storage_image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType storage_buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
-// Without emission (2), without textures.
-constexpr ShaderBinding density_bindings[] = {{0, uniform}, {1, storage_image}, {2, storage_image}, {3, sampled},
-                                              {4, sampled}, {5, sampled},       {6, sampled},       {7, sampled},
-                                              {8, sampled}, {9, sampled}};
-constexpr ShaderBinding dark_density_bindings[] = {{0, uniform}, {1, storage_image}, {3, sampled},
-                                                   {4, sampled}, {5, sampled},       {6, sampled},
-                                                   {7, sampled}, {8, sampled},       {9, sampled}};
+// Which of them a variant has follows from its index below.
+constexpr ShaderBinding density_bindings[] = {
+    {0, uniform},         {1, storage_image},   {2, storage_image}, {3, sampled}, {4, sampled},
+    {5, sampled},         {6, sampled},         {7, sampled},       {8, sampled}, {9, sampled},
+    {10, storage_buffer}, {11, storage_buffer}, {12, uniform}};
+
+struct DensityBindings {
+    std::array<ShaderBinding, std::size(density_bindings)> list{};
+    std::size_t count = 0;
+};
+
+/// By variant without the storage format: emission * 4 + textures * 2 + particles.
+constexpr std::array<DensityBindings, 8> density_binding_lists = [] {
+    std::array<DensityBindings, 8> lists{};
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        for (const ShaderBinding& binding : density_bindings) {
+            const std::uint32_t b = binding.binding;
+            if (b < 2 || (b == 2 && i >= 4) || (b >= 3 && b <= 9 && i / 2 % 2 == 1) || (b >= 10 && i % 2 == 1)) {
+                lists[i].list[lists[i].count++] = binding;
+            }
+        }
+    }
+    return lists;
+}();
+
 constexpr ShaderBinding bake_bindings[] = {{0, storage_buffer}};
 constexpr ShaderBinding clustering_bindings[] = {
     {0, uniform}, {1, uniform}, {2, storage_buffer}, {3, storage_buffer}, {4, storage_buffer}};
@@ -190,16 +218,18 @@ const std::span<const std::uint32_t> lighting_code[] = {
 
 } // namespace
 
-ShaderCode density_injection_shader(StorageFormat storage, bool emission, bool textures) {
-    const std::span<const std::uint32_t> code[] = {density_injection_fp16_m0_t0, density_injection_fp16_m0_t1,
-                                                   density_injection_fp16_m1_t0, density_injection_fp16_m1_t1,
-                                                   density_injection_fp32_m0_t0, density_injection_fp32_m0_t1,
-                                                   density_injection_fp32_m1_t0, density_injection_fp32_m1_t1};
-    const std::size_t format = storage == StorageFormat::fp16 ? 0 : 4;
-    const std::span<const ShaderBinding> all = emission ? std::span<const ShaderBinding>(density_bindings)
-                                                        : std::span<const ShaderBinding>(dark_density_bindings);
-    return {"density injection", code[format + (emission ? 2 : 0) + (textures ? 1 : 0)],
-            textures ? all : all.first(emission ? 3 : 2)};
+ShaderCode density_injection_shader(StorageFormat storage, bool emission, bool textures, bool particles) {
+    const std::span<const std::uint32_t> code[] = {
+        density_injection_fp16_m0_t0_p0, density_injection_fp16_m0_t0_p1, density_injection_fp16_m0_t1_p0,
+        density_injection_fp16_m0_t1_p1, density_injection_fp16_m1_t0_p0, density_injection_fp16_m1_t0_p1,
+        density_injection_fp16_m1_t1_p0, density_injection_fp16_m1_t1_p1, density_injection_fp32_m0_t0_p0,
+        density_injection_fp32_m0_t0_p1, density_injection_fp32_m0_t1_p0, density_injection_fp32_m0_t1_p1,
+        density_injection_fp32_m1_t0_p0, density_injection_fp32_m1_t0_p1, density_injection_fp32_m1_t1_p0,
+        density_injection_fp32_m1_t1_p1};
+    const std::size_t index = (emission ? 4U : 0U) + (textures ? 2U : 0U) + (particles ? 1U : 0U);
+    const DensityBindings& bindings = density_binding_lists[index];
+    return {"density injection", code[(storage == StorageFormat::fp16 ? 0 : density_binding_lists.size()) + index],
+            std::span(bindings.list).first(bindings.count)};
 }
 
 ShaderCode noise_bake_shader() {
@@ -208,6 +238,10 @@ ShaderCode noise_bake_shader() {
 
 ShaderCode light_clustering_shader() {
     return {"light clustering", light_clustering, clustering_bindings};
+}
+
+ShaderCode fog_particle_clustering_shader() {
+    return {"fog particle clustering", fog_particle_clustering, std::span(clustering_bindings).first(4)};
 }
 
 ShaderCode esm_downsample_shader() {

@@ -35,9 +35,10 @@ struct LightingVariant {
 };
 
 /// `textures`: for media that are made of textures.
-[[nodiscard]] ShaderCode density_injection_shader(StorageFormat storage, bool emission, bool textures);
+[[nodiscard]] ShaderCode density_injection_shader(StorageFormat storage, bool emission, bool textures, bool particles);
 [[nodiscard]] ShaderCode noise_bake_shader();
 [[nodiscard]] ShaderCode light_clustering_shader();
+[[nodiscard]] ShaderCode fog_particle_clustering_shader();
 [[nodiscard]] ShaderCode esm_downsample_shader();
 [[nodiscard]] ShaderCode esm_blur_shader();
 /// Bindings that a variant lacks are left out of the list.

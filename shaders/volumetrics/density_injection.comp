@@ -1,6 +1,7 @@
 // Media -> scattering coefficient (rgb) and extinction (a) of each froxel, times density_scale so that fp16 holds thin
 // and dense media alike. One pass, specialised to the media that are there. EMISSION 1: and the radiance gained per
-// metre (rgb), times emission_scale. TEXTURES 1: media of textures may be there. Where extinction is coloured the volume is
+// metre (rgb), times emission_scale. TEXTURES 1: media of textures may be there. PARTICLES 1: there are particles, with
+// the clusters that they reach. Where extinction is coloured the volume is
 // twice as deep: behind the N slices stand N with the extinction of each channel (rgb).
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -40,6 +41,13 @@ layout(constant_id = 12) const bool has_grids = false;
 const bool has_baked_noise = false;
 #endif
 #include "common/local_volumes.glsl"
+#if PARTICLES
+#include "common/light_clusters.glsl"
+#include "volumetrics/fog_particle.glsl"
+layout(set = 0, binding = 10, std430) readonly restrict buffer Particles { GpuFogParticle particles[]; };
+layout(set = 0, binding = 11, std430) readonly restrict buffer Masks { uint masks[]; };
+layout(set = 0, binding = 12) uniform ClusterParameters { LightClusters clusters; };
+#endif
 
 float octave_noise_factor(vec3 render_position, float froxel_m) {
     vec3 p = render_position * u.noise_cells.x + u.noise_origin.xyz;
@@ -118,6 +126,21 @@ void main() {
             blend_local_volume(u.volumes[i], eye + ray * near_m, eye + ray * far_m, medium, extinction, emission);
         }
     }
+#if PARTICLES
+    float stretch = length(ray);
+    uint first = cluster_index_of_froxel(clusters, uvec3(froxel)) * clusters.block.w;
+    for (uint word = 0u; word < clusters.block.w; ++word) {
+        for (uint mask = masks[first + word]; mask != 0u; mask &= mask - 1u) {
+            GpuFogParticle particle = particles[32u * word + uint(findLSB(mask))];
+            vec3 to_centre = particle.position_radius.xyz - (eye + ray * near_m);
+            float weight = mean_fog_particle_weight(to_centre, particle.position_radius.w, ray / stretch,
+                                                    (far_m - near_m) * stretch);
+            float amount = weight * particle.albedo_amount.w;
+            medium += vec4(particle.albedo_amount.rgb, 1.0) * amount;
+            extinction += amount;
+        }
+    }
+#endif
     if (noise_octaves > 0u || has_baked_noise) {
         float middle_m = 0.5 * (near_m + far_m);
         vec2 cell = (u.volume.slope.xy * middle_m + u.volume.origin.xy) / (grid.xy - 1.0);

@@ -1,5 +1,6 @@
 // Lights -> a bit mask per cluster. Conservative: a light may be listed where it does not reach, never the other way.
-// Spheres against the box around the cluster in view space, spot cones against the sphere around that box.
+// Spheres against the box around the cluster in view space, spot cones against the sphere around that box. PARTICLES 1:
+// particles of fog in the place of lights.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -7,18 +8,41 @@
 #include "common/lights.glsl"
 #include "volumetrics/froxel.glsl"
 #include "volumetrics/interop.h"
+#if PARTICLES
+#include "volumetrics/fog_particle.h"
+#endif
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
 
 layout(set = 0, binding = 0) uniform Parameters { VolumetricParameters u; };
 layout(set = 0, binding = 1) uniform ClusterParameters { LightClusters clusters; };
+#if PARTICLES
+layout(set = 0, binding = 2, std430) readonly restrict buffer Particles { GpuFogParticle particles[]; };
+#else
 layout(set = 0, binding = 2, std430) readonly restrict buffer Lights { GpuLight lights[]; };
-layout(set = 0, binding = 3, std430) writeonly restrict buffer Masks { uint masks[]; };
 layout(set = 0, binding = 4, std430) writeonly restrict buffer CompactLights { GpuLight compact_lights[]; };
+#endif
+layout(set = 0, binding = 3, std430) writeonly restrict buffer Masks { uint masks[]; };
 
 struct ClusterColumn {
     vec2 uv_min;
     vec2 uv_max;
+};
+
+struct Cluster {
+    ClusterColumn column;
+    float near_m;
+    float far_m;
+    bool last_slab;
+};
+
+// A sphere of lights or particles beside a cluster, in view space.
+struct Approach {
+    vec3 centre;
+    vec3 low; // box around the cluster
+    vec3 high;
+    float slack;
+    bool meets;
 };
 
 // Box around the part of the column between two depths: its corners are those of the two end faces.
@@ -47,17 +71,29 @@ bool cone_meets_sphere(vec3 apex, vec3 axis, float cos_angle, float length_m, ve
     return outside <= radius && along <= length_m + radius && along >= -radius;
 }
 
-bool light_reaches(GpuLight light, ClusterColumn column, float near_m, float far_m, bool last_slab) {
-    vec3 centre = transpose(mat3(u.render_from_view)) * light.position_range.xyz;
-    float range = light.position_range.w;
-    // The last slab has no end of its own: the light's reach ends it.
-    float far_end_m = last_slab ? max(near_m, range - centre.z) : far_m;
-    vec3 low;
-    vec3 high;
-    column_box(column, near_m, far_end_m, low, high);
+Approach approach(vec3 render_position, float range, Cluster cluster) {
+    Approach made;
+    made.centre = transpose(mat3(u.render_from_view)) * render_position;
+    // The last slab has no end of its own: the sphere's reach ends it.
+    float far_end_m = cluster.last_slab ? max(cluster.near_m, range - made.centre.z) : cluster.far_m;
+    column_box(cluster.column, cluster.near_m, far_end_m, made.low, made.high);
     // Rounding of positions and of the depth law on both sides.
-    float slack = 1e-3 * far_end_m + 1e-5 * (length(centre) + range);
-    if (!sphere_meets_box(centre, range + slack, low, high)) {
+    made.slack = 1e-3 * far_end_m + 1e-5 * (length(made.centre) + range);
+    made.meets = sphere_meets_box(made.centre, range + made.slack, made.low, made.high);
+    return made;
+}
+
+#if PARTICLES
+bool reaches(uint index, Cluster cluster) {
+    vec4 sphere = particles[index].position_radius;
+    return approach(sphere.xyz, sphere.w, cluster).meets;
+}
+#else
+bool reaches(uint index, Cluster cluster) {
+    GpuLight light = lights[index];
+    float range = light.position_range.w;
+    Approach near = approach(light.position_range.xyz, range, cluster);
+    if (!near.meets) {
         return false;
     }
     if (light.intensity_type.w < 0.5 || light.cone.x <= 0.0) {
@@ -65,37 +101,42 @@ bool light_reaches(GpuLight light, ClusterColumn column, float near_m, float far
     }
     float cos_angle = clamp(-light.cone.y / light.cone.x, 0.0, 1.0);
     vec3 axis = transpose(mat3(u.render_from_view)) * light.direction_radius.xyz;
-    float radius = 0.5 * length(high - low) + slack + 1e-3 * range;
-    return cone_meets_sphere(centre, axis, cos_angle, range, 0.5 * (low + high), radius);
+    float radius = 0.5 * length(near.high - near.low) + near.slack + 1e-3 * range;
+    return cone_meets_sphere(near.centre, axis, cos_angle, range, 0.5 * (near.low + near.high), radius);
 }
+#endif
 
-// One invocation a word of a mask; the first ones also copy the lights for the passes that read them as uniforms.
+// One invocation a word of a mask, a row of them a slab; the first ones also copy the lights for the passes that read
+// them as uniforms.
 void main() {
-    if (gl_GlobalInvocationID.x < min(clusters.grid.w, TYNDALL_COMPACT_LIGHT_COUNT)) {
-        compact_lights[gl_GlobalInvocationID.x] = lights[gl_GlobalInvocationID.x];
+    uvec2 id = gl_GlobalInvocationID.xy;
+#if !PARTICLES
+    if (id.y == 0u && id.x < min(clusters.grid.w, TYNDALL_COMPACT_LIGHT_COUNT)) {
+        compact_lights[id.x] = lights[id.x];
     }
-    uint word = gl_GlobalInvocationID.x % clusters.block.w;
-    uint cluster = gl_GlobalInvocationID.x / clusters.block.w;
+#endif
+    uint word = id.x % clusters.block.w;
+    uint column_index = id.x / clusters.block.w;
     uvec3 counts = clusters.counts.xyz;
-    if (cluster >= counts.x * counts.y * counts.z) {
+    if (column_index >= counts.x * counts.y) {
         return;
     }
-    uvec3 c = uvec3(cluster % counts.x, (cluster / counts.x) % counts.y, cluster / (counts.x * counts.y));
+    uvec3 c = uvec3(column_index % counts.x, column_index / counts.x, id.y);
     uvec3 first = c * clusters.block.xyz;
     uvec3 end = min(first + clusters.block.xyz, clusters.grid.xyz);
     // A column reaches half way to its neighbours.
     ClusterColumn column = ClusterColumn(uv_of_column(u.volume, vec2(first.xy) - 0.5),
                                          uv_of_column(u.volume, vec2(end.xy) - 0.5));
-    float near_m = boundary_depth(u.volume, float(first.z));
-    float far_m = boundary_depth(u.volume, float(end.z));
+    Cluster cluster = Cluster(column, boundary_depth(u.volume, float(first.z)), boundary_depth(u.volume, float(end.z)),
+                              c.z + 1u == counts.z);
 
     uint mask = 0u;
     uint base = 32u * word;
     uint count = min(32u, clusters.grid.w - base);
     for (uint i = 0u; i < count; ++i) {
-        if (light_reaches(lights[base + i], column, near_m, far_m, c.z + 1u == counts.z)) {
+        if (reaches(base + i, cluster)) {
             mask |= 1u << i;
         }
     }
-    masks[gl_GlobalInvocationID.x] = mask;
+    masks[(id.y * counts.x * counts.y + column_index) * clusters.block.w + word] = mask;
 }

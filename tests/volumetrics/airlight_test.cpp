@@ -78,7 +78,7 @@ TEST(AirlightChoice, LeavesNoiseMapsVolumesAndColoredExtinctionToTheFroxels) {
     inputs.medium.map.texels = *DensityTexels::create({2, 1, 1}, {255, 0});
     EXPECT_EQ(chosen(inputs), Places{});
     EXPECT_EQ(choose_airlights(inputs, std::nullopt).why_not,
-              "only froxels know noise, a density map and local volumes");
+              "only froxels know noise, a density map, local volumes and particles");
     inputs.medium.map.texels.reset();
     inputs.medium.homogeneous.extinction_color = {1.0F, 1.0F, 0.5F};
     EXPECT_EQ(chosen(inputs), Places{});
