@@ -146,16 +146,30 @@ bool has_kind(const json& value, Kind kind) {
     return false;
 }
 
-/// "extras" belong to whoever wrote the file: only what gltf_punctual.cpp reads of a light is kept, and that unless it
-/// is a list or an object.
+/// What is read of the "extras" of the object at `path`: by gltf_punctual.cpp of a light, by gltf_materials.cpp of a
+/// material.
+std::vector<std::string_view> read_extras(std::string_view path) {
+    constexpr std::string_view lights = "/extensions/KHR_lights_punctual/lights/";
+    constexpr std::string_view materials = "/materials/";
+    if (path.starts_with(lights)) {
+        return {"shadow", "shadow_near_m"};
+    }
+    if (path.starts_with(materials) && path.find('/', materials.size()) == std::string_view::npos) {
+        return {"blend"};
+    }
+    return {};
+}
+
+/// "extras" belong to whoever wrote the file: only what is read of them is kept, and that unless it is a list or an
+/// object.
 void reduce_extras(json& value, const std::string& path) {
     const auto extras = value.find("extras");
     if (extras == value.end()) {
         return;
     }
     json kept = json::object();
-    if (path.starts_with("/extensions/KHR_lights_punctual/lights/") && extras->is_object()) {
-        for (const char* key : {"shadow", "shadow_near_m"}) {
+    if (extras->is_object()) {
+        for (const std::string_view key : read_extras(path)) {
             const auto found = extras->find(key);
             if (found != extras->end() && found->is_primitive()) {
                 kept[key] = *found;
@@ -169,8 +183,8 @@ void reduce_extras(json& value, const std::string& path) {
     }
 }
 
-/// Checks one object or array and all below it, and removes "extras" on the way but for those of lights. `path` names
-/// it as a JSON pointer does.
+/// Checks one object or array and all below it, and removes "extras" on the way but for what is read of them. `path`
+/// names it as a JSON pointer does.
 std::optional<Error> check(json& value, const std::string& path, int depth, bool in_extension) {
     if (depth > depth_limit) {
         return Error{"its JSON is nested more than " + std::to_string(depth_limit) + " deep"};

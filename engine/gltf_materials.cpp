@@ -59,6 +59,9 @@ public:
         }
         material.emissive = factor(vec3(source.emissiveFactor), 1.0) * static_cast<float>(strength);
         material.unlit = find_extension(extensions, "KHR_materials_unlit") != nullptr;
+        if (const tinygltf::Value* blend = find_member(&source.extras, "blend")) {
+            read_blend(*blend, material);
+        }
         if (!error_.message.empty()) {
             return tl::unexpected(std::move(error_));
         }
@@ -88,6 +91,18 @@ private:
             material.alpha_mode = AlphaMode::blend;
         } else if (source.alphaMode != "OPAQUE") {
             fail("has the alphaMode '" + source.alphaMode + "', allowed are OPAQUE, MASK and BLEND");
+        }
+    }
+
+    void read_blend(const tinygltf::Value& extra, Material& material) {
+        const auto blend = extra.IsString() ? to_blend(extra.Get<std::string>()) : std::nullopt;
+        if (!blend) {
+            add_note(notes_,
+                     label_ + " has an extra 'blend' that is not " + std::string(blend_words) + ", which is left out.");
+        } else if (material.alpha_mode != AlphaMode::blend) {
+            add_note(notes_, label_ + " has an extra 'blend' without the alphaMode BLEND, which is left out.");
+        } else {
+            material.blend = *blend;
         }
     }
 

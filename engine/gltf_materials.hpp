@@ -19,7 +19,8 @@ struct GltfMaterials {
 };
 
 /// Converts all materials and decodes the images they use. `image_done(done, count)` is told after each image.
-/// Errors name the material, texture or image file.
+/// Errors name the material, texture or image file. Of a material's "extras" is read "blend", how what is blended is
+/// laid over what lies behind it: a word of to_blend.
 [[nodiscard]] tl::expected<GltfMaterials, Error>
 read_gltf_materials(const GltfDocument& document, std::vector<std::string>& notes,
                     const std::function<void(std::size_t done, std::size_t count)>& image_done);

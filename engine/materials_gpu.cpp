@@ -110,6 +110,8 @@ gpu::GpuMaterial make_gpu_material(const Material& material) {
 
 std::uint32_t material_features(const Material& material) {
     std::uint32_t features = material.unlit ? feature_unlit : 0U;
+    features |= material.blend == Blend::additive ? feature_additive : 0U;
+    features |= material.blend == Blend::multiply ? feature_filter : 0U;
     const auto uses = texture_uses(material);
     for (std::uint32_t slot = 0; slot < texture_slots; ++slot) {
         if (const std::optional<TextureUse>& use = *uses[slot]) {

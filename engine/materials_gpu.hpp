@@ -22,6 +22,8 @@ inline constexpr std::uint32_t feature_normal_texture = 1U << 2U;
 inline constexpr std::uint32_t feature_unlit = 1U << 7U;
 inline constexpr std::uint32_t feature_uv_transform = 1U << 8U;
 inline constexpr std::uint32_t feature_vertex_color = 1U << 9U;
+inline constexpr std::uint32_t feature_additive = 1U << 10U; ///< of what is blended
+inline constexpr std::uint32_t feature_filter = 1U << 11U;   ///< likewise: Blend::multiply
 
 [[nodiscard]] gpu::GpuMaterial make_gpu_material(const Material& material);
 [[nodiscard]] std::uint32_t material_features(const Material& material);

@@ -49,6 +49,12 @@ tl::expected<std::unique_ptr<Renderer>, Error> Renderer::create(const Device& de
 }
 
 tl::expected<void, Error> Renderer::make(VkPipelineCache cache, std::uint32_t frames_in_flight) {
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+        const std::string owner = "Material " + std::to_string(i) + " \"" + scene_.materials[i].name + "\"";
+        if (auto fits = check_blend(owner, scene_.materials[i].blend, device_->info().dual_source_blending); !fits) {
+            return fits;
+        }
+    }
     const float anisotropy = std::clamp(settings_.texture_anisotropy, 1.0F, device_->info().max_anisotropy);
     auto scene_gpu = upload_scene(*device_, scene_, anisotropy);
     if (!scene_gpu) {

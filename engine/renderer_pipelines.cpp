@@ -13,6 +13,8 @@
 #include "spirv/depth_view_m0.h"
 #include "spirv/depth_view_m1.h"
 #include "spirv/exposure_compute.h"
+#include "spirv/filter_f0.h"
+#include "spirv/filter_f1.h"
 #include "spirv/forward_s0_l00.h"
 #include "spirv/forward_s0_l10.h"
 #include "spirv/forward_s0_l11.h"
@@ -70,6 +72,11 @@ Spirv forward_spirv(const ForwardVariant& variant) {
     const std::size_t surface = !variant.transparent ? 0 : variant.scattering ? 2 : 1;
     const std::size_t kind = static_cast<std::size_t>(variant.lights) + (variant.local_shadow ? 2 : 0);
     return shaders[surface][variant.sun_shadow ? 1 : 0][kind];
+}
+
+/// What no light concerns leaves most of a variant's bindings alone.
+Spirv filter_spirv(const ForwardVariant& variant) {
+    return variant.scattering ? Spirv(filter_f1) : Spirv(filter_f0);
 }
 
 constexpr VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
@@ -241,29 +248,20 @@ tl::expected<Program, Error> RendererPipelines::forward(const ForwardVariant& va
                                                                   {4, march.octaves},
                                                                   {5, variant.airlight_features},
                                                                   {6, march.colored || variant.colored_scattering}}};
-        constexpr VkColorComponentFlags rgba =
-            VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-        const VkPipelineColorBlendAttachmentState premultiplied{
-            .blendEnable = VK_TRUE,
-            .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
-            .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
-            .colorBlendOp = VK_BLEND_OP_ADD,
-            .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-            .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
-            .alphaBlendOp = VK_BLEND_OP_ADD,
-            .colorWriteMask = rgba};
+        const bool filter = (features & feature_filter) != 0;
+        const VkPipelineColorBlendAttachmentState blend = laid_over(filter);
         using Blends = std::span<const VkPipelineColorBlendAttachmentState>;
         return create_graphics_pipeline(
             *device_, cache_,
             {.layout = pipeline_layout,
              .vertex_spirv = forward_vertex,
-             .fragment_spirv = forward_spirv(variant),
+             .fragment_spirv = filter ? filter_spirv(variant) : forward_spirv(variant),
              .constants = constants,
              .vertex_bindings = vertex_bindings(true),
              .vertex_attributes = vertex_attributes(true),
              .color_formats = {&color_format_, 1},
              .depth_format = depth_format,
-             .blends = variant.transparent ? Blends(&premultiplied, 1) : Blends(),
+             .blends = variant.transparent ? Blends(&blend, 1) : Blends(),
              .depth_test = true,
              .depth_write = false,
              // Opaque surfaces are those that the depth pre-pass left, to the bit.

@@ -11,6 +11,8 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/blend.hpp"
+
 namespace tyndall::engine {
 
 /// Axis-aligned, in world space. Empty until the first `grow`.
@@ -118,7 +120,8 @@ struct Material {
     glm::vec3 specular_color_factor{1.0F};
     std::optional<TextureUse> specular_color; ///< rgb
     AlphaMode alpha_mode = AlphaMode::opaque;
-    float alpha_cutoff = 0.5F; ///< mask: what has less alpha is not there
+    Blend blend = Blend::premultiplied; ///< with AlphaMode::blend; a filter passes its base colour
+    float alpha_cutoff = 0.5F;          ///< mask: what has less alpha is not there
     bool double_sided = false;
     bool unlit = false; ///< base colour is the radiance
 };

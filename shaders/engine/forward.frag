@@ -2,7 +2,7 @@
 //   SUN_SHADOW   1: the sun shines through its cascades
 //   LIGHTS       0: none, 1: all of them, 2: those of the point's cluster
 //   LOCAL_SHADOW 1: (with LIGHTS) those that cast shadows do
-//   TRANSPARENT  1: premultiplied by alpha
+//   TRANSPARENT  1: laid over what is behind, or added to it; 2: a filter of its base colour, which no light concerns
 //   SCATTERING   1: (with TRANSPARENT) fogged at the fragment's own depth
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -56,7 +56,12 @@ layout(location = 2) in vec4 surface_tangent;
 layout(location = 3) in vec4 surface_uv;
 layout(location = 4) in vec4 surface_color;
 
-layout(location = 0) out vec4 color;
+#if TRANSPARENT == 2
+layout(location = 0, index = 0) out vec4 color;
+layout(location = 0, index = 1) out vec4 passes; // share of the light from behind
+#else
+layout(location = 0) out vec4 color; // of the light from behind passes 1 - its alpha
+#endif
 
 // A degenerate transform leaves no direction: zero then, and not a number that spreads.
 vec3 unit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-30)); }
@@ -240,7 +245,13 @@ vec3 lit_radiance(vec3 base, float depth_m) {
 void main() {
     vec4 base = base_color();
     float depth_m = dot(frame.depth_row.xyz, surface_position) + frame.depth_row.w;
+#if TRANSPARENT == 2
+    vec3 radiance = vec3(0.0);
+    vec3 taken = 1.0 - clamp(base.rgb, 0.0, 1.0); // at alpha 1 of the light from behind, and shown of the fog before it
+#else
     vec3 radiance = has(feature_unlit) ? base.rgb : lit_radiance(base.rgb, depth_m);
+    vec3 taken = vec3(has(feature_additive) ? 0.0 : 1.0);
+#endif
 #if SCATTERING
     vec3 fog;
     vec3 transmittance;
@@ -250,12 +261,16 @@ void main() {
                                 interleaved_noise(gl_FragCoord.xy));
     path.render_start = surface_position - path.length_m * ray;
     ADD_AIRLIGHT(volume, airlights, path, fog)
-    radiance = radiance * transmittance + fog;
+    radiance = radiance * transmittance + taken * fog;
 #endif
     radiance = min(radiance, vec3(frame.ray_origin.w));
 #if TRANSPARENT
     float alpha = clamp(base.a, 0.0, 1.0);
-    color = vec4(radiance * alpha, alpha);
+    vec4 all_taken = vec4(taken, (taken.r + taken.g + taken.b) / 3.0);
+    color = vec4(radiance, all_taken.a) * alpha;
+#if TRANSPARENT == 2
+    passes = 1.0 - alpha * all_taken;
+#endif
 #else
     color = vec4(radiance, 1.0);
 #endif

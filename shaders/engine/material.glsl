@@ -18,6 +18,7 @@ const uint specular_color_slot = 6u;
 const uint feature_unlit = 128u;
 const uint feature_uv_transform = 256u; // some texture has a transform or the second set of coordinates
 const uint feature_vertex_color = 512u;
+const uint feature_additive = 1024u;
 
 layout(set = 1, binding = 0) uniform Material { GpuMaterial material; };
 layout(set = 1, binding = 1) uniform sampler2D base_color_texture;

@@ -74,6 +74,26 @@ TEST(GltfMaterial, FactorsAndModesAreRead) {
     EXPECT_EQ(loaded(with_material({{"alphaMode", "BLEND"}})).materials[0].alpha_mode, AlphaMode::blend);
 }
 
+TEST(GltfMaterial, AnExtraSaysHowWhatIsBlendedIs) {
+    const auto with_extra = [](const json& blend, const char* mode = "BLEND") {
+        return loaded(with_material({{"alphaMode", mode}, {"extras", {{"blend", blend}, {"mood", "grim"}}}}));
+    };
+    EXPECT_EQ(loaded(with_material({{"alphaMode", "BLEND"}})).materials[0].blend, Blend::premultiplied);
+    EXPECT_EQ(with_extra("premultiplied").materials[0].blend, Blend::premultiplied);
+    EXPECT_EQ(with_extra("additive").materials[0].blend, Blend::additive);
+    EXPECT_EQ(with_extra("multiply").materials[0].blend, Blend::multiply);
+    for (const json& wrong : {json("screen"), json(1), json::array({"additive"})}) {
+        EXPECT_EQ(with_extra(wrong).materials[0].blend, Blend::premultiplied);
+    }
+    EXPECT_TRUE(has_note(with_extra("screen"),
+                         "Material 0 has an extra 'blend' that is not \"premultiplied\", \"additive\" or \"multiply\", "
+                         "which is left out."));
+    EXPECT_TRUE(has_note(with_extra(1), "Material 0 has an extra 'blend' that is not"));
+    const Scene opaque = with_extra("additive", "OPAQUE");
+    EXPECT_EQ(opaque.materials[0].blend, Blend::premultiplied);
+    EXPECT_TRUE(has_note(opaque, "Material 0 has an extra 'blend' without the alphaMode BLEND, which is left out."));
+}
+
 TEST(GltfMaterial, FactorsOutsideOfTheirRangeAreClampedWithANote) {
     const Scene scene = loaded(with_material({{"pbrMetallicRoughness", {{"metallicFactor", 7.0}}}}));
     EXPECT_EQ(scene.materials[0].metallic_factor, 1.0F);

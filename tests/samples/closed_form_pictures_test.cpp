@@ -17,39 +17,55 @@ namespace {
 
 class PanesInFog : public ClosedFormPictures {
 protected:
-    void expect_panes_in_fog(const Color& sigma, const std::string& extinction);
+    /// Of the panes from the nearest on each third is blended in the same of the three ways.
+    void expect_panes_in_fog(const Color& sigma, const std::string& extinction,
+                             const std::array<std::string, 3>& ways = {"premultiplied", "premultiplied",
+                                                                       "premultiplied"});
 };
 
 struct Pane {
     double depth_m;
     double alpha;
     Color color;
+    std::string blend = "premultiplied";
 };
 
 /// Fog between the eye and each pane, each pane over what lies behind: exact for a homogeneous medium of extinction
 /// sigma that scatters `source` toward the eye.
 Color through_panes(const std::vector<Pane>& front_to_back, double stretch, const Color& sigma, const Color& source) {
     Color sum = {};
-    double passes = 1.0;
+    Color passes = {1.0, 1.0, 1.0};
     for (const Pane& pane : front_to_back) {
         for (std::size_t c = 0; c < 3; ++c) {
             const double transmittance = std::exp(-sigma[c] * pane.depth_m * stretch);
-            sum[c] += passes * pane.alpha * (pane.color[c] * transmittance + source[c] * (1.0 - transmittance));
+            const double seen = pane.color[c] * transmittance;
+            const double fog = source[c] * (1.0 - transmittance);
+            if (pane.blend == "additive") {
+                sum[c] += passes[c] * pane.alpha * seen;
+            } else if (pane.blend == "multiply") {
+                const double filter = 1.0 - pane.alpha * (1.0 - pane.color[c]);
+                sum[c] += passes[c] * (1.0 - filter) * fog;
+                passes[c] *= filter;
+            } else {
+                sum[c] += passes[c] * pane.alpha * (seen + fog);
+                passes[c] *= 1.0 - pane.alpha;
+            }
         }
-        passes *= 1.0 - pane.alpha;
     }
     return sum;
 }
 
 // The engine sorts: whatever the order of submission, each pane lies over those behind it and has the fog of its depth.
-void PanesInFog::expect_panes_in_fog(const Color& sigma, const std::string& extinction) {
+void PanesInFog::expect_panes_in_fog(const Color& sigma, const std::string& extinction,
+                                     const std::array<std::string, 3>& ways) {
     const double albedo = 0.9;
     const Color ambient = {0.5, 0.6, 0.8};
     const Color source = {albedo * ambient[0], albedo * ambient[1], albedo * ambient[2]};
     std::vector<Pane> panes;
-    for (int i = 0; i < 8; ++i) {
-        const double t = i / 8.0;
-        panes.push_back({1.3 + 2.1 * i, 0.2 + 0.4 * t, {0.9 - 0.8 * t, 0.1 + 0.3 * t, 0.2 + 0.7 * t}});
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double n = static_cast<double>(i);
+        const double t = n / 8.0;
+        panes.push_back({1.3 + 2.1 * n, 0.2 + 0.4 * t, {0.9 - 0.8 * t, 0.1 + 0.3 * t, 0.2 + 0.7 * t}, ways[i % 3]});
     }
     panes.push_back({21.0, 1.0, {0.7, 0.6, 0.4}}); // the wall
     write_text(folder_ / "fog.json", R"({"medium":{"homogeneous":{"extinction_per_m":)" + extinction +
@@ -66,8 +82,11 @@ void PanesInFog::expect_panes_in_fog(const Color& sigma, const std::string& exti
         file_ = empty;
         add_dark_light();
         for (const std::size_t i : order) {
-            add_rectangle(0.0, -panes[i].depth_m, 40.0,
-                          unlit(panes[i].color, panes[i].alpha, panes[i].alpha < 1.0 ? "BLEND" : "OPAQUE"));
+            json material = unlit(panes[i].color, panes[i].alpha, panes[i].alpha < 1.0 ? "BLEND" : "OPAQUE");
+            if (panes[i].blend != "premultiplied") {
+                material["extras"]["blend"] = panes[i].blend;
+            }
+            add_rectangle(0.0, -panes[i].depth_m, 40.0, std::move(material));
         }
         images.push_back(render({"--fp32", "--fog", (folder_ / "fog.json").string()}));
     }
@@ -86,6 +105,14 @@ TEST_F(PanesInFog, LieOverOneAnotherInAnyOrder) {
 
 TEST_F(PanesInFog, LieOverOneAnotherInColoredFog) {
     expect_panes_in_fog({0.12, 0.03, 0.0}, "[0.12,0.03,0]");
+}
+
+TEST_F(PanesInFog, AreAddedAndFilterInAnyOrder) {
+    expect_panes_in_fog({0.06, 0.06, 0.06}, "0.06", {"multiply", "additive", "premultiplied"});
+}
+
+TEST_F(PanesInFog, AreAddedAndFilterInColoredFog) {
+    expect_panes_in_fog({0.12, 0.03, 0.0}, "[0.12,0.03,0]", {"premultiplied", "multiply", "additive"});
 }
 
 /// A white Lambert wall without a layer above.
