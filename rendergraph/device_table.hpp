@@ -156,4 +156,7 @@ struct DeviceTable {
 [[nodiscard]] bool load_device_table(PFN_vkGetDeviceProcAddr get_device_proc_addr, VkDevice device, DeviceTable& table,
                                      const char*& missing);
 
+/// `table` with commands that record nothing, its other functions as they are.
+[[nodiscard]] DeviceTable without_commands(DeviceTable table);
+
 } // namespace tyndall::rg

@@ -57,6 +57,7 @@ ExecutorState::Result ExecutorState::initialise() {
                                            .message = "The device has no " + std::string(missing) +
                                                       "; Vulkan 1.3 and VK_KHR_push_descriptor must be enabled on it"});
     }
+    vk_of_lost_frame = without_commands(vk);
     info.frames_in_flight = std::clamp(info.frames_in_flight, 1U, most_frames_in_flight);
     for (const DeviceQueue& given : info.queues) {
         const auto same = std::find_if(queues.begin(), queues.end(),
@@ -275,6 +276,7 @@ Executor& Executor::operator=(Executor&&) noexcept = default;
 Executor::~Executor() = default;
 
 tl::expected<Executor, ExecuteError> Executor::create(ExecutorInfo info) {
+    info.check_bindings = checks_bindings(info.check_bindings);
     auto state = std::make_unique<ExecutorState>(std::move(info));
     if (ExecutorState::Result ready = state->initialise(); !ready) {
         return tl::unexpected(std::move(ready.error()));

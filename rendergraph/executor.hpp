@@ -15,6 +15,7 @@
 #include "rendergraph/device_table.hpp"
 #include "rendergraph/graph.hpp"
 #include "rendergraph/plan.hpp"
+#include "rendergraph/shader_bindings.hpp"
 
 namespace tyndall::rg {
 
@@ -25,7 +26,8 @@ struct ExecuteError {
         device_lost,
         missing_function,
         missing_binding,
-        undeclared_access, ///< a callback asked its PassContext for what its pass did not declare
+        undeclared_access, ///< a callback asked its PassContext for what its pass did not declare, or its shader does
+                           ///< it
         unsuitable_queue,
         vulkan
     };
@@ -65,6 +67,9 @@ struct ExecutorInfo {
     /// one, before their first write, so that reading what nobody wrote shows. What a queue cannot clear is left out.
     /// Times of passes then hold the fills, and full barriers stand around them.
     bool poison_transients = false;
+    /// Debug switch, always on in debug builds: what a pass pushes is compared with what the shader given to
+    /// PassContext::push binds, and a difference is an undeclared access.
+    bool check_bindings = false;
 };
 
 /// The physical objects of one import for one frame.
@@ -91,6 +96,8 @@ struct Binding {
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     VkDescriptorImageInfo image = {};
     VkDescriptorBufferInfo buffer = {};
+    std::uint32_t resource = none; ///< whose it is, by the handle that was given; none: not of the graph
+    std::uint32_t version = 0;
 };
 
 /// Which part and shape of an image a view shows. Defaults: all mips and layers that the pass declared, natural type.
@@ -103,11 +110,12 @@ struct ViewDesc {
 class ExecutorState;
 
 /// What a pass sees while it records. It gives only what the pass declared; anything else is a null handle and an error
-/// of the frame.
+/// of the frame. From then on the frame is lost: the commands of vk() do nothing, so that what was refused does not
+/// reach the driver, and the passes that follow are still asked, so that all mistakes are told together.
 class PassContext {
 public:
     [[nodiscard]] VkCommandBuffer cmd() const { return cmd_; }
-    [[nodiscard]] const DeviceTable& vk() const { return *vk_; }
+    [[nodiscard]] const DeviceTable& vk() const; ///< to be asked for each command
     /// Index in [0, frames_in_flight) of per-frame host data that no earlier frame still reads.
     [[nodiscard]] std::uint32_t frame_slot() const { return frame_slot_; }
     /// Of the attachments of a graphics pass, which has begun rendering with viewport and scissor set when it is
@@ -130,13 +138,16 @@ public:
     [[nodiscard]] Binding storage(std::uint32_t binding, Buffer buffer);
     [[nodiscard]] Binding uniform(std::uint32_t binding, Buffer buffer, VkDeviceSize offset = 0,
                                   VkDeviceSize size = VK_WHOLE_SIZE);
-    /// vkCmdPushDescriptorSetKHR of `bindings` into set `set` of `layout` (VK_KHR_push_descriptor).
-    void push(VkPipelineBindPoint point, VkPipelineLayout layout, std::uint32_t set, std::span<const Binding> bindings);
+    /// vkCmdPushDescriptorSetKHR of `bindings` into set `set` of `layout` (VK_KHR_push_descriptor). `shader`: what the
+    /// shaders that will see them bind, for ExecutorInfo::check_bindings. It fails the frame where they use a binding
+    /// of `set` that is not among `bindings`, or as another type of descriptor; and where they may write what the pass
+    /// declares as only read, or read what it declares as only written.
+    void push(VkPipelineBindPoint point, VkPipelineLayout layout, std::uint32_t set, std::span<const Binding> bindings,
+              std::span<const ReflectedBinding> shader = {});
 
 private:
     friend class ExecutorState;
     ExecutorState* state_ = nullptr;
-    const DeviceTable* vk_ = nullptr;
     VkCommandBuffer cmd_ = VK_NULL_HANDLE;
     std::uint32_t frame_slot_ = 0;
     std::uint32_t pass_ = none;

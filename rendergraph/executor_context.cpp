@@ -83,6 +83,14 @@ VkImageLayout layout_of(const AccessDesc& access, VkFormat format) {
     return access_scope(access.access, access.direction, format).layout;
 }
 
+template <typename Handle>
+Binding binding_of(const Handle& handle, std::uint32_t binding, VkDescriptorType type) {
+    Binding out{.binding = binding, .type = type};
+    out.resource = handle.resource;
+    out.version = handle.version;
+    return out;
+}
+
 } // namespace
 
 ImageRange resolved(const ImageRange& range, const ImageDesc& image) {
@@ -126,6 +134,16 @@ const AccessDesc* ExecutorState::declared_access(std::uint32_t pass, std::uint32
     return access;
 }
 
+DeclaredDirections ExecutorState::declared_directions(std::uint32_t pass, std::uint32_t resource, std::uint32_t version,
+                                                      VkFlags usage) const {
+    DeclaredDirections out;
+    Declared(*work.graph, pass, resource, version, usage).for_each([&](const AccessDesc& access) {
+        out.reads |= is_read(access.direction);
+        out.writes |= is_write(access.direction);
+    });
+    return out;
+}
+
 VkImageView ExecutorState::declared_view(std::uint32_t pass, Image image, const ViewDesc& desc, VkFlags usage) {
     if (declared_access(pass, image.resource, image.version, ResourceKind::image, usage) == nullptr) {
         return VK_NULL_HANDLE;
@@ -148,6 +166,10 @@ VkImageView ExecutorState::declared_view(std::uint32_t pass, Image image, const 
 
 std::string_view PassContext::pass_name() const {
     return state_->work.graph->passes[pass_].name;
+}
+
+const DeviceTable& PassContext::vk() const {
+    return state_->work.error ? state_->vk_of_lost_frame : state_->vk;
 }
 
 VkImage PassContext::image(Image image) {
@@ -182,7 +204,7 @@ bool PassContext::history_valid(Buffer buffer) {
 
 Binding PassContext::sampled(std::uint32_t binding, Image image, VkSampler sampler, const ViewDesc& desc) {
     constexpr VkFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-    Binding out{.binding = binding, .type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
+    Binding out = binding_of(image, binding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
     const AccessDesc* access =
         state_->declared_access(pass_, image.resource, image.version, ResourceKind::image, usage);
     if (access != nullptr) {
@@ -193,14 +215,14 @@ Binding PassContext::sampled(std::uint32_t binding, Image image, VkSampler sampl
 }
 
 Binding PassContext::storage(std::uint32_t binding, Image image, const ViewDesc& desc) {
-    Binding out{.binding = binding, .type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+    Binding out = binding_of(image, binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     out.image = {VK_NULL_HANDLE, state_->declared_view(pass_, image, desc, VK_IMAGE_USAGE_STORAGE_BIT),
                  VK_IMAGE_LAYOUT_GENERAL};
     return out;
 }
 
 Binding PassContext::storage(std::uint32_t binding, Buffer buffer) {
-    Binding out{.binding = binding, .type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+    Binding out = binding_of(buffer, binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     const AccessDesc* access = state_->declared_access(pass_, buffer.resource, buffer.version, ResourceKind::buffer,
                                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     if (access != nullptr) {
@@ -211,7 +233,7 @@ Binding PassContext::storage(std::uint32_t binding, Buffer buffer) {
 }
 
 Binding PassContext::uniform(std::uint32_t binding, Buffer buffer, VkDeviceSize offset, VkDeviceSize size) {
-    Binding out{.binding = binding, .type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
+    Binding out = binding_of(buffer, binding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     const AccessDesc* access = state_->declared_access(pass_, buffer.resource, buffer.version, ResourceKind::buffer,
                                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
     if (access == nullptr) {
@@ -233,9 +255,9 @@ Binding PassContext::uniform(std::uint32_t binding, Buffer buffer, VkDeviceSize 
 }
 
 void PassContext::push(VkPipelineBindPoint point, VkPipelineLayout layout, std::uint32_t set,
-                       std::span<const Binding> bindings) {
-    if (state_->work.error) {
-        return; // the frame is lost: what was refused must not reach the driver
+                       std::span<const Binding> bindings, std::span<const ReflectedBinding> shader) {
+    if (state_->info.check_bindings) {
+        state_->check_bindings(pass_, set, bindings, shader);
     }
     std::vector<VkWriteDescriptorSet>& writes = state_->work.writes;
     writes.clear();
@@ -247,7 +269,7 @@ void PassContext::push(VkPipelineBindPoint point, VkPipelineLayout layout, std::
                           .pImageInfo = &binding.image,
                           .pBufferInfo = &binding.buffer});
     }
-    vk_->CmdPushDescriptorSetKHR(cmd_, point, layout, set, static_cast<std::uint32_t>(writes.size()), writes.data());
+    vk().CmdPushDescriptorSetKHR(cmd_, point, layout, set, static_cast<std::uint32_t>(writes.size()), writes.data());
 }
 
 } // namespace tyndall::rg

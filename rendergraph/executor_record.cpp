@@ -131,7 +131,6 @@ void ExecutorState::record_pass(VkCommandBuffer cmd, const PlannedPass& planned)
 
     PassContext ctx;
     ctx.state_ = this;
-    ctx.vk_ = &vk;
     ctx.cmd_ = cmd;
     ctx.frame_slot_ = work.slot;
     ctx.pass_ = planned.pass;

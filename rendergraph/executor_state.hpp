@@ -167,6 +167,12 @@ struct FrameWork {
     std::optional<ExecuteError> error; ///< the first one; undeclared accesses are gathered in its message
 };
 
+/// What a pass declared to do to a resource.
+struct DeclaredDirections {
+    bool reads = false;
+    bool writes = false;
+};
+
 /// By resource: what any pass of the graph needs, culled or not, so that requirements and objects speak of the same.
 /// `poisoned`: and what ExecutorInfo::poison_transients needs.
 void gather_usage(const GraphDesc& graph, bool poisoned, std::vector<VkFlags>& usage);
@@ -238,8 +244,17 @@ public:
     [[nodiscard]] const AccessDesc* declared_access(std::uint32_t pass, std::uint32_t resource, std::uint32_t version,
                                                     ResourceKind kind, VkFlags usage);
     [[nodiscard]] VkImageView declared_view(std::uint32_t pass, Image image, const ViewDesc& desc, VkFlags usage);
+    /// Neither, where it did not declare the resource so.
+    [[nodiscard]] DeclaredDirections declared_directions(std::uint32_t pass, std::uint32_t resource,
+                                                         std::uint32_t version, VkFlags usage) const;
     /// Adds to the frame's error that `pass` used what it did not declare.
     void report_undeclared(std::uint32_t pass, const std::string& what);
+
+    // executor_bindings.cpp: what its shader does to it
+    void check_bindings(std::uint32_t pass, std::uint32_t set, std::span<const Binding> pushed,
+                        std::span<const ReflectedBinding> shader);
+    /// `pushed`: null where nothing is pushed at the binding.
+    void check_binding(std::uint32_t pass, const Binding* pushed, const ReflectedBinding& expected);
 
     // executor_record.cpp: commands
     [[nodiscard]] Result record_segments();
@@ -281,6 +296,7 @@ public:
 
     ExecutorInfo info;
     DeviceTable vk = {};
+    DeviceTable vk_of_lost_frame = {}; ///< what passes call after an error
     std::vector<RealQueue> queues;
     std::uint32_t all_families = 0; ///< family bits, 0 if there is only one
     std::vector<FrameSlot> slots;

@@ -373,7 +373,8 @@ void Feature::State::declare_fog(rg::GraphBuilder& graph, const OpaqueResources&
             bindings[3] = ctx.sampled(3, shadow.local_maps, nearest_sampler, depth_array_view);
             bindings[4] = ctx.storage(4, shadow.local_records);
         }
-        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0, std::span(bindings).first(local_shadow ? 5 : 3));
+        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0, std::span(bindings).first(local_shadow ? 5 : 3),
+                 program.bindings);
         ctx.vk().CmdDraw(ctx.cmd(), 3, 1, 0, 0);
     });
 }

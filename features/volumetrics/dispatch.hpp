@@ -23,7 +23,7 @@ inline Dispatch covering(const Program& program, const GroupShape& group, std::u
 
 inline void run(rg::PassContext& ctx, const Dispatch& dispatch, std::span<const rg::Binding> bindings) {
     ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.program.pipeline);
-    ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.program.layout, 0, bindings);
+    ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.program.layout, 0, bindings, dispatch.program.bindings);
     ctx.vk().CmdDispatch(ctx.cmd(), dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
 }
 

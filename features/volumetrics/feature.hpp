@@ -39,6 +39,7 @@ struct FeatureInfo {
     bool dual_source_blending = false; ///< the feature dualSrcBlend is enabled: media of coloured extinction need it
     /// Every family whose queues a frame's passes may run on: the feature's own buffers are shared between them.
     std::vector<std::uint32_t> queue_families = {};
+    bool check_bindings = false; ///< the executor's ExecutorInfo::check_bindings
 };
 
 /// FrameInputs::lights as a buffer; needed only when there are any.

@@ -56,7 +56,8 @@ struct FrameState {
 
 /// What all views use.
 struct Feature::Shared {
-    explicit Shared(const FeatureInfo& given) : info(given), pipelines(*given.vk, given.device, given.pipeline_cache) {}
+    explicit Shared(const FeatureInfo& given)
+        : info(given), pipelines(*given.vk, given.device, given.pipeline_cache, given.check_bindings) {}
     Shared(const Shared&) = delete;
     Shared& operator=(const Shared&) = delete;
     ~Shared();

@@ -1,6 +1,7 @@
 #include "features/volumetrics/pipelines.hpp"
 
 #include <string>
+#include <utility>
 
 namespace tyndall::volumetrics {
 namespace {
@@ -21,8 +22,8 @@ std::vector<VkSpecializationMapEntry> constant_map(std::size_t count) {
 
 } // namespace
 
-Pipelines::Pipelines(const rg::DeviceTable& vk, VkDevice device, VkPipelineCache cache)
-    : vk_(&vk), device_(device), cache_(cache) {}
+Pipelines::Pipelines(const rg::DeviceTable& vk, VkDevice device, VkPipelineCache cache, bool check_bindings)
+    : vk_(&vk), device_(device), cache_(cache), check_bindings_(rg::checks_bindings(check_bindings)) {}
 
 Pipelines::~Pipelines() {
     for (Entry& entry : entries_) {
@@ -75,6 +76,25 @@ tl::expected<void, Error> Pipelines::make_layout(const ShaderCode& shader, VkSha
     return {};
 }
 
+tl::expected<void, Error> Pipelines::reflect(const ShaderCode& shader, Entry& entry) const {
+    if (!check_bindings_) {
+        return {};
+    }
+    auto bindings = rg::reflect_bindings(shader.spirv);
+    if (!bindings) {
+        return tl::unexpected(
+            Error{std::string("The shader of the ") + shader.name + " pass cannot be read. " + bindings.error() + "."});
+    }
+    entry.bindings = std::move(*bindings);
+    return {};
+}
+
+Program Pipelines::keep(Entry entry) {
+    Entry& kept = entries_.emplace_back(std::move(entry));
+    kept.program.bindings = kept.bindings; // stays where it is when entries move
+    return kept.program;
+}
+
 tl::expected<VkShaderModule, Error> Pipelines::make_module(const ShaderCode& shader) {
     const VkShaderModuleCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
@@ -100,7 +120,10 @@ tl::expected<Program, Error> Pipelines::compute(const ShaderCode& shader, const 
     if (!shader_module) {
         return tl::unexpected(shader_module.error());
     }
-    tl::expected<void, Error> made = make_layout(shader, VK_SHADER_STAGE_COMPUTE_BIT, entry);
+    tl::expected<void, Error> made = reflect(shader, entry);
+    if (made) {
+        made = make_layout(shader, VK_SHADER_STAGE_COMPUTE_BIT, entry);
+    }
     if (made) {
         const std::vector<VkSpecializationMapEntry> map = constant_map(entry.key.size());
         const VkSpecializationInfo specialization{static_cast<std::uint32_t>(map.size()), map.data(),
@@ -125,8 +148,7 @@ tl::expected<Program, Error> Pipelines::compute(const ShaderCode& shader, const 
         destroy(entry);
         return tl::unexpected(made.error());
     }
-    entries_.push_back(entry);
-    return entry.program;
+    return keep(std::move(entry));
 }
 
 tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vertex, const ShaderCode& fragment,
@@ -146,7 +168,10 @@ tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vert
         vk_->DestroyShaderModule(device_, *vertex_module, nullptr);
         return tl::unexpected(fragment_module.error());
     }
-    tl::expected<void, Error> made = make_layout(fragment, VK_SHADER_STAGE_FRAGMENT_BIT, entry);
+    tl::expected<void, Error> made = reflect(fragment, entry);
+    if (made) {
+        made = make_layout(fragment, VK_SHADER_STAGE_FRAGMENT_BIT, entry);
+    }
     if (made) {
         const std::vector<VkSpecializationMapEntry> map = constant_map(constants.size());
         const VkSpecializationInfo specialization{static_cast<std::uint32_t>(map.size()), map.data(),
@@ -224,8 +249,7 @@ tl::expected<Program, Error> Pipelines::full_screen_blend(const ShaderCode& vert
         destroy(entry);
         return tl::unexpected(made.error());
     }
-    entries_.push_back(entry);
-    return entry.program;
+    return keep(std::move(entry));
 }
 
 } // namespace tyndall::volumetrics

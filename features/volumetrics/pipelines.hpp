@@ -12,6 +12,7 @@
 #include "features/volumetrics/error.hpp"
 #include "features/volumetrics/shaders.hpp"
 #include "rendergraph/device_table.hpp"
+#include "rendergraph/shader_bindings.hpp"
 
 namespace tyndall::volumetrics {
 
@@ -19,13 +20,16 @@ namespace tyndall::volumetrics {
 struct Program {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
+    std::span<const rg::ReflectedBinding>
+        bindings; ///< of its shaders, where they are checked; valid as the pipeline is
 };
 
 using GroupShape = std::array<std::uint32_t, 3>;
 
 class Pipelines {
 public:
-    Pipelines(const rg::DeviceTable& vk, VkDevice device, VkPipelineCache cache);
+    /// `check_bindings`: as rg::ExecutorInfo::check_bindings.
+    Pipelines(const rg::DeviceTable& vk, VkDevice device, VkPipelineCache cache, bool check_bindings);
     Pipelines(const Pipelines&) = delete;
     Pipelines& operator=(const Pipelines&) = delete;
     ~Pipelines(); ///< no frame that uses a program may be in flight
@@ -45,17 +49,22 @@ private:
         std::vector<std::uint32_t> key; ///< group shape or the colour format, and constants
         const std::uint32_t* code = nullptr;
         VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+        std::vector<rg::ReflectedBinding> bindings; ///< what `program` refers to
         Program program;
     };
     [[nodiscard]] const Entry* find(const ShaderCode& shader, const std::vector<std::uint32_t>& key) const;
     [[nodiscard]] tl::expected<void, Error> make_layout(const ShaderCode& shader, VkShaderStageFlags stages,
                                                         Entry& entry);
     [[nodiscard]] tl::expected<VkShaderModule, Error> make_module(const ShaderCode& shader);
+    /// Notes in `entry` what `shader` binds, where bindings are checked.
+    [[nodiscard]] tl::expected<void, Error> reflect(const ShaderCode& shader, Entry& entry) const;
+    Program keep(Entry entry);
     void destroy(Entry& entry);
 
     const rg::DeviceTable* vk_;
     VkDevice device_;
     VkPipelineCache cache_;
+    bool check_bindings_;
     std::vector<Entry> entries_;
 };
 

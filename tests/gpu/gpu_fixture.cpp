@@ -21,6 +21,18 @@ rg::ImportDesc written_by_host() {
     return {.read_only = true};
 } // submission makes host writes visible
 
+std::vector<rg::ReflectedBinding> reflected(std::initializer_list<std::span<const std::uint32_t>> shaders) {
+    std::vector<rg::ReflectedBinding> out;
+    for (const std::span<const std::uint32_t> spirv : shaders) {
+        const auto bindings = rg::reflect_bindings(spirv);
+        EXPECT_TRUE(bindings.has_value()) << (bindings ? "" : bindings.error());
+        if (bindings) {
+            out.insert(out.end(), bindings->begin(), bindings->end());
+        }
+    }
+    return out;
+}
+
 void GpuTest::SetUp() {
     mode_ = mode_from_environment();
     std::string why;
@@ -75,7 +87,8 @@ rg::ExecutorInfo GpuTest::executor_info() const {
                           .buffer_image_granularity = device_->properties.limits.bufferImageGranularity,
                           .timestamp_period_ns = device_->properties.limits.timestampPeriod,
                           .queues = {queue},
-                          .debug_labels = true};
+                          .debug_labels = true,
+                          .check_bindings = true};
     if (mode_ == Mode::semaphores) {
         info.queues.push_back(queue);
         info.queues.back().kind = rg::QueueKind::compute;
@@ -252,6 +265,7 @@ TestPipeline GpuTest::compute_pipeline(std::span<const std::uint32_t> spirv, std
     EXPECT_EQ(vk().CreateComputePipelines(device_->device, VK_NULL_HANDLE, 1, &create, nullptr, &out.pipeline),
               VK_SUCCESS);
     vk().DestroyShaderModule(device_->device, module, nullptr);
+    out.bindings = reflected({spirv});
     pipelines_.push_back(out);
     return out;
 }
@@ -308,6 +322,7 @@ TestPipeline GpuTest::graphics_pipeline(std::span<const std::uint32_t> vertex, s
     for (const VkShaderModule module : modules) {
         vk().DestroyShaderModule(device_->device, module, nullptr);
     }
+    out.bindings = reflected({vertex, fragment});
     pipelines_.push_back(out);
     return out;
 }

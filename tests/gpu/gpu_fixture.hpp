@@ -11,6 +11,7 @@
 //                          are real semaphores
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,7 +50,12 @@ struct HostImage {
 struct TestPipeline {
     VkPipeline pipeline = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
+    std::vector<rg::ReflectedBinding> bindings; ///< of its shaders
 };
+
+/// What the shaders of one pipeline bind; one that is no module fails the test.
+[[nodiscard]] std::vector<rg::ReflectedBinding>
+reflected(std::initializer_list<std::span<const std::uint32_t>> shaders);
 
 /// Imports of buffers that the host reads after the frame, and of those that it wrote before.
 [[nodiscard]] rg::ImportDesc read_by_host();

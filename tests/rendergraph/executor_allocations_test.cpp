@@ -68,6 +68,9 @@ TEST_F(Allocations, NorDoesWhatPassesAskFor) {
     graph.add_pass("fill", PassKind::transfer)
         .writes(numbers, Access::transfer_destination)
         .executes([=](PassContext& ctx) { static_cast<void>(ctx.buffer(numbers)); });
+    static constexpr ReflectedBinding shader[] = {{0, 0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, true, false},
+                                                  {0, 1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, false, true},
+                                                  {0, 2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, true, false}};
     std::uint32_t called = 0;
     graph.add_pass("accumulate", PassKind::compute)
         .reads(before, Access::sampled_compute)
@@ -76,7 +79,8 @@ TEST_F(Allocations, NorDoesWhatPassesAskFor) {
         .executes([=, &called](PassContext& ctx) {
             called += ctx.history_valid(before) ? 1 : 0;
             ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, VK_NULL_HANDLE, 0,
-                     std::array{ctx.sampled(0, before, VK_NULL_HANDLE), ctx.storage(1, sum), ctx.storage(2, numbers)});
+                     std::array{ctx.sampled(0, before, VK_NULL_HANDLE), ctx.storage(1, sum), ctx.storage(2, numbers)},
+                     shader);
         });
     graph.add_pass("draw", PassKind::graphics)
         .reads(sum, Access::sampled_fragment)
@@ -86,7 +90,9 @@ TEST_F(Allocations, NorDoesWhatPassesAskFor) {
             static_cast<void>(ctx.layout(sum));
             static_cast<void>(ctx.pass_name());
         });
-    EXPECT_EQ(in_steady_frames(any_queues(), graph.finish()), 0U);
+    ExecutorInfo checked = any_queues();
+    checked.check_bindings = true;
+    EXPECT_EQ(in_steady_frames(std::move(checked), graph.finish()), 0U);
     EXPECT_EQ(called, frames_to_settle + frames_counted - 1);
 }
 

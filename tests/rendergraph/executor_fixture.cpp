@@ -41,7 +41,7 @@ PassBuilder ExecutorTest::add_affine(GraphBuilder& graph, std::string_view name,
         const std::array<std::uint32_t, 3> constants = {scale, offset, count};
         ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
         ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0,
-                 std::array{ctx.storage(0, source), ctx.storage(1, out)});
+                 std::array{ctx.storage(0, source), ctx.storage(1, out)}, pipeline.bindings);
         ctx.vk().CmdPushConstants(ctx.cmd(), pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 12, constants.data());
         ctx.vk().CmdDispatch(ctx.cmd(), (count + 63) / 64, 1, 1);
     });
@@ -61,7 +61,8 @@ void ExecutorTest::add_pattern(GraphBuilder& graph, std::string_view name, Image
         .writes(image, Access::storage_compute)
         .executes([=, pipeline = pattern_](PassContext& ctx) {
             ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
-            ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, std::array{ctx.storage(0, image)});
+            ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, std::array{ctx.storage(0, image)},
+                     pipeline.bindings);
             ctx.vk().CmdPushConstants(ctx.cmd(), pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 16, base.data());
             ctx.vk().CmdDispatch(ctx.cmd(), (extent.width + 7) / 8, (extent.height + 7) / 8, 1);
         });
@@ -80,7 +81,7 @@ PassBuilder ExecutorTest::add_accumulate(GraphBuilder& graph, std::string_view n
         } constants{{increment, increment, increment, increment}, !is_history || ctx.history_valid(source)};
         ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
         ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0,
-                 std::array{ctx.sampled(0, source, sampler_), ctx.storage(1, out)});
+                 std::array{ctx.sampled(0, source, sampler_), ctx.storage(1, out)}, pipeline.bindings);
         ctx.vk().CmdPushConstants(ctx.cmd(), pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 20, &constants);
         ctx.vk().CmdDispatch(ctx.cmd(), (extent.width + 7) / 8, (extent.height + 7) / 8, 1);
     });
@@ -93,7 +94,8 @@ void ExecutorTest::add_double(GraphBuilder& graph, std::string_view name, Image 
         .writes(target, Access::color_attachment)
         .executes([=, this, pipeline = double_](PassContext& ctx) {
             ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.pipeline);
-            ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 0, std::array{ctx.sampled(0, source, sampler_)});
+            ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 0, std::array{ctx.sampled(0, source, sampler_)},
+                     pipeline.bindings);
             ctx.vk().CmdDraw(ctx.cmd(), 3, 1, 0, 0);
         });
 }

@@ -110,7 +110,8 @@ void FogTest::SetUp() {
                                  .device = info.device,
                                  .memory_properties = info.memory_properties,
                                  .frames_in_flight = info.frames_in_flight,
-                                 .dual_source_blending = gpu().dual_source_blending});
+                                 .dual_source_blending = gpu().dual_source_blending,
+                                 .check_bindings = info.check_bindings});
     ASSERT_TRUE(made) << made.error().message;
     feature_ = std::make_unique<Feature>(std::move(*made));
 }

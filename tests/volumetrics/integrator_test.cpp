@@ -99,11 +99,12 @@ protected:
     Output accumulate(const Settings& settings,
                       const std::function<TwinSlice(std::uint32_t, std::uint32_t)>& slice_of) {
         const rg::ExecutorInfo info = executor_info();
-        Pipelines pipelines(vk(), info.device, VK_NULL_HANDLE);
+        Pipelines pipelines(vk(), info.device, VK_NULL_HANDLE, info.check_bindings);
         const auto program =
             pipelines.compute(accumulation_shader(settings.storage, false, settings.error_estimate, false), {8, 1, 1},
                               std::array{static_cast<std::uint32_t>(settings.integrator)});
         EXPECT_TRUE(program) << program.error().message;
+        EXPECT_FALSE(program->bindings.empty());
 
         FrameInputs inputs;
         inputs.settings = settings;
@@ -161,7 +162,7 @@ protected:
                 bindings.push_back(ctx.storage(4, estimate));
             }
             ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
-            ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+            ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings, program.bindings);
             ctx.vk().CmdDispatch(ctx.cmd(), 1, height, 1);
         });
         const auto read = [&](const char* name, rg::Image image, std::size_t count) {
