@@ -44,6 +44,7 @@ void for_each_choice(std::uint32_t count, F&& f) {
 TEST(Shaders, BindWhatTheirListsSay) {
     expect_listed(noise_bake_shader(), "");
     expect_listed(light_clustering_shader(), "");
+    expect_listed(fog_particle_clustering_shader(), "");
     expect_listed(esm_downsample_shader(), "");
     expect_listed(esm_blur_shader(), "");
     expect_listed(full_screen_shader(), "");
@@ -51,10 +52,8 @@ TEST(Shaders, BindWhatTheirListsSay) {
     expect_listed(fog_on_opaque_shader(false, false), "without a shadow");
     expect_listed(fog_on_opaque_shader(false, true), "with a shadow");
     for (const StorageFormat storage : {StorageFormat::fp16, StorageFormat::fp32}) {
-        for_each_choice(2, [&](auto chosen, const std::string& variant) {
-            expect_listed(density_injection_shader(storage, chosen(0), chosen(1)), variant);
-        });
         for_each_choice(3, [&](auto chosen, const std::string& variant) {
+            expect_listed(density_injection_shader(storage, chosen(0), chosen(1), chosen(2)), variant);
             expect_listed(accumulation_shader(storage, chosen(0), chosen(1), chosen(2)), variant);
         });
         for (const LocalLights lights :
