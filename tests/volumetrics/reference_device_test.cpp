@@ -149,8 +149,10 @@ reference::Scene truth_of(const Scene& scene) {
     reference::Scene truth;
     truth.medium = scene.inputs.medium;
     truth.time_s = scene.inputs.time_s;
-    truth.sun =
-        reference::DirectionalLight{glm::normalize(glm::dvec3(scene.inputs.sun->direction)), glm::dvec3(15.0), false};
+    if (scene.inputs.sun) {
+        truth.sun = reference::DirectionalLight{glm::normalize(glm::dvec3(scene.inputs.sun->direction)),
+                                                glm::dvec3(15.0), false};
+    }
     for (const gpu::GpuLight& light : scene.lights) {
         truth.lights.push_back({.position = glm::dvec3(light.position_range),
                                 .intensity_cd = glm::dvec3(light.intensity_type),
@@ -234,6 +236,20 @@ TEST_F(AgainstReference, NoiseWeakensLight) {
     EXPECT_LE(airlight_error(render(scene), scene, exact).relative_l2, 6e-3);
     scene.inputs.settings.light_path = LightPath::closed_form;
     EXPECT_GE(airlight_error(render(scene), scene, exact).relative_l2, 5e-2);
+}
+
+// Alone, so that the sun does not hide a part of its way.
+TEST_F(AgainstReference, NoiseWeakensALampsLightOnAllOfItsWay) {
+    Scene scene = sunny_scene();
+    scene.inputs.sun.reset();
+    scene.inputs.medium.homogeneous.extinction_per_m = 0.2F;
+    scene.inputs.medium.noise = {.amplitude = 0.9F, .scale_m = 8.0F};
+    scene.inputs.settings.light_path_steps = 32;
+    scene.lights = {lamp({-7.0F, 3.0F, -12.0F}, 60.0F)};
+    const std::vector<reference::Estimate> exact = exact_airlight(scene, truth_of(scene), 80, 1e-3);
+    const double error = airlight_error(render(scene), scene, exact).relative_l2;
+    std::printf("noise before a lamp: %.2e\n", error);
+    EXPECT_LE(error, 3e-3);
 }
 
 } // namespace
