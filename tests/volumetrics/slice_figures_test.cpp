@@ -92,7 +92,11 @@ TEST(SliceFigures, HenyeyGreensteinByTheBookInSinglePrecision) {
         return sum;
     };
     EXPECT_NEAR(integral(0.999), 1.0, 1e-4);
-    EXPECT_NEAR(integral(0.999F), 0.965, 0.02);
+    // Percents off; on which side depends on the compiler's order of operations (0.965 by g++, 1.024 by clang).
+    const double off = std::abs(integral(0.999F) - 1.0);
+    std::printf("Henyey-Greenstein in single precision: off by %.3f\n", off);
+    EXPECT_GT(off, 0.015);
+    EXPECT_LT(off, 0.06);
 }
 
 /// Extinction per m of the smooth medium, times `density`, and radiance per optical depth, at t in [0, 1] m.
