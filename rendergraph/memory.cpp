@@ -58,6 +58,18 @@ Diagnostics validate_memory(const GraphDesc& graph, const MemoryRequirements& me
                           .where = resource.where,
                           .other_where = resource.where});
     };
+    std::vector<bool> touched; // made for the first that has no size
+    const auto is_touched = [&](std::size_t resource) {
+        if (touched.empty()) {
+            touched.resize(graph.resources.size());
+            for (const AccessDesc& access : graph.accesses) {
+                if (access.resource < touched.size()) { // a foreign handle's lies outside
+                    touched[access.resource] = true;
+                }
+            }
+        }
+        return touched[resource];
+    };
     VkDeviceSize total = 0;
     for (std::size_t r = 0; r < graph.resources.size(); ++r) {
         const ResourceDesc& resource = graph.resources[r];
@@ -67,9 +79,7 @@ Diagnostics validate_memory(const GraphDesc& graph, const MemoryRequirements& me
         const VkDeviceSize size = r < memory.of_resource.size() ? memory.of_resource[r].size_bytes : 0;
         if (size == 0) {
             // What no pass touches has no usage, and a driver then no answer; it is never made.
-            const bool is_touched = std::any_of(graph.accesses.begin(), graph.accesses.end(),
-                                                [r](const AccessDesc& access) { return access.resource == r; });
-            if (!is_touched) {
+            if (!is_touched(r)) {
                 continue;
             }
             bad(resource, "has a format of which no size is known; ask the driver what memory it needs, or choose "

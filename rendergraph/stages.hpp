@@ -73,7 +73,8 @@ struct Flow {
 /// Of the attachments of one pass; a part of validate. O(accesses of the pass).
 void validate_attachments(const GraphDesc& graph, const PassDesc& pass, Diagnostics& errors);
 
-/// Whether the transients can be placed: each has a size, and sums of all do not overflow. O(resources).
+/// Whether the transients can be placed: each has a size, and sums of all do not overflow.
+/// O(resources + accesses).
 [[nodiscard]] Diagnostics validate_memory(const GraphDesc& graph, const MemoryRequirements& memory);
 
 // ---- order -------------------------------------------------------------------------------------------------------

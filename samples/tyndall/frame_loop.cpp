@@ -204,8 +204,8 @@ Result FrameLoop::make_plan() {
     return prove_plan();
 }
 
-/// Every new plan, in every build: the proof takes microseconds. First the frames after which it comes, whose histories
-/// and memory it takes over.
+/// Every new plan, in every build: the proof takes a fraction of a millisecond. First the frames after which it comes,
+/// whose histories and memory it takes over.
 Result FrameLoop::prove_plan() {
     const rg::PlannedFrame before{&proved_graph_, &proved_plan_};
     const rg::PlannedFrame now{&declared_.desc, plan_};

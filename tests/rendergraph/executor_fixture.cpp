@@ -101,13 +101,13 @@ void ExecutorTest::add_double(GraphBuilder& graph, std::string_view name, Image 
 }
 
 void ExecutorTest::add_copy(GraphBuilder& graph, std::string_view name, Image image, Buffer& buffer, VkExtent2D extent,
-                            std::uint32_t mip, std::uint32_t layer) {
+                            std::uint32_t mip, std::uint32_t layer, VkImageAspectFlags aspects) {
     graph.add_pass(name, PassKind::transfer)
         .reads(image, Access::transfer_source, {mip, 1, layer, 1})
         .writes(buffer, Access::transfer_destination)
         .executes([=](PassContext& ctx) {
             const VkBufferImageCopy2 region{.sType = VK_STRUCTURE_TYPE_BUFFER_IMAGE_COPY_2,
-                                            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, layer, 1},
+                                            .imageSubresource = {aspects, mip, layer, 1},
                                             .imageExtent = {extent.width, extent.height, 1}};
             const VkCopyImageToBufferInfo2 copy{.sType = VK_STRUCTURE_TYPE_COPY_IMAGE_TO_BUFFER_INFO_2,
                                                 .srcImage = ctx.image(image),

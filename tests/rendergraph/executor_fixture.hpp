@@ -33,7 +33,8 @@ protected:
     /// target = 2 * source, drawn.
     void add_double(rg::GraphBuilder& graph, std::string_view name, rg::Image source, rg::Image& target);
     void add_copy(rg::GraphBuilder& graph, std::string_view name, rg::Image image, rg::Buffer& buffer,
-                  VkExtent2D extent, std::uint32_t mip = 0, std::uint32_t layer = 0);
+                  VkExtent2D extent, std::uint32_t mip = 0, std::uint32_t layer = 0,
+                  VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT);
 
     /// Imports a read-back buffer and adds its binding to `bindings_`.
     rg::Buffer import_read_back(rg::GraphBuilder& graph, std::string_view name, const HostBuffer& buffer);

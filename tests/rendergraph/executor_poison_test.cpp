@@ -25,21 +25,7 @@ protected:
         Image image = graph.create_image("image", {.format = format, .extent = {4, 4, 1}});
         Buffer out = import_read_back(graph, "out", result);
         graph.add_pass("nothing", kind).writes(image, access).executes([](PassContext&) {});
-        graph.add_pass("copy", PassKind::transfer)
-            .reads(image, Access::transfer_source)
-            .writes(out, Access::transfer_destination)
-            .executes([=](PassContext& ctx) {
-                const VkBufferImageCopy2 region{.sType = VK_STRUCTURE_TYPE_BUFFER_IMAGE_COPY_2,
-                                                .imageSubresource = {format_aspects(format), 0, 0, 1},
-                                                .imageExtent = {4, 4, 1}};
-                const VkCopyImageToBufferInfo2 copy{.sType = VK_STRUCTURE_TYPE_COPY_IMAGE_TO_BUFFER_INFO_2,
-                                                    .srcImage = ctx.image(image),
-                                                    .srcImageLayout = ctx.layout(image),
-                                                    .dstBuffer = ctx.buffer(out),
-                                                    .regionCount = 1,
-                                                    .pRegions = &region};
-                ctx.vk().CmdCopyImageToBuffer2(ctx.cmd(), &copy);
-            });
+        add_copy(graph, "copy", image, out, {4, 4}, 0, 0, format_aspects(format));
         run_bound(graph.finish());
         return result.as<std::uint32_t>()[5];
     }
