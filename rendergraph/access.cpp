@@ -107,22 +107,4 @@ bool is_depth_or_stencil(VkFormat format) {
     return (format_aspects(format) & VK_IMAGE_ASPECT_COLOR_BIT) == 0;
 }
 
-AccessScope access_scope(Access access, Direction direction, VkFormat format) {
-    const AccessInfo& info = access_info(access);
-    AccessScope scope;
-    scope.stages = info.stages;
-    scope.access = (is_read(direction) ? info.read_mask : VkAccessFlags2{0}) |
-                   (is_write(direction) ? info.write_mask : VkAccessFlags2{0});
-    if (access == Access::depth_attachment) {
-        scope.access |= info.read_mask; // testing reads, also where a clear replaced the content
-    }
-    if (format != VK_FORMAT_UNDEFINED) {
-        const bool depth = is_depth_or_stencil(format);
-        scope.layout = !depth                         ? info.color_layout
-                       : direction == Direction::read ? info.depth_read_only_layout
-                                                      : info.depth_layout;
-    }
-    return scope;
-}
-
 } // namespace tyndall::rg

@@ -167,7 +167,11 @@ private:
             report_too_early(from_access, to_access);
         }
         if (from != to) {
-            flow_.edges.push_back({from, to, graph_.accesses[from_access].resource, hazard});
+            Edge& edge = flow_.edges.emplace_back(); // filled where it lies
+            edge.from = from;
+            edge.to = to;
+            edge.resource = graph_.accesses[from_access].resource;
+            edge.hazard = hazard;
         }
     }
 

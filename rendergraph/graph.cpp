@@ -218,54 +218,51 @@ void GraphBuilder::report_unknown(bool initialised, std::uint32_t pass, Where wh
 }
 
 template <typename Handle>
-void GraphBuilder::add_access(std::uint32_t pass, Handle& handle, ResourceKind kind, AccessDesc access) {
-    if (!check_handle(handle, kind, pass, access.where)) {
-        return;
+AccessDesc& GraphBuilder::add_access(std::uint32_t pass, Handle& handle, ResourceKind kind, Access access,
+                                     Direction direction, Where where) {
+    if (!check_handle(handle, kind, pass, where)) {
+        return refused_ = {};
     }
-    access.pass = pass;
-    access.resource = handle.resource;
-    access.version = handle.version;
-    if (is_write(access.direction)) {
+    AccessDesc& added = desc_.accesses.emplace_back();
+    added.pass = pass;
+    added.resource = handle.resource;
+    added.access = access;
+    added.direction = direction;
+    added.where = where;
+    if (is_write(direction)) {
         // A write from an overwritten version gives the version that already has a writer: validate reports both.
-        access.version = ++handle.version;
+        ++handle.version;
         latest_version_[handle.resource] = std::max(latest_version_[handle.resource], handle.version);
     }
-    desc_.accesses.push_back(access);
+    added.version = handle.version;
+    return added;
 }
 
 PassBuilder& PassBuilder::reads(Image image, Access access, const ImageRange& range, Where where) {
-    builder_->add_access(pass_, image, ResourceKind::image,
-                         {.access = access, .direction = Direction::read, .image_range = range, .where = where});
+    builder_->add_access(pass_, image, ResourceKind::image, access, Direction::read, where).image_range = range;
     return *this;
 }
 PassBuilder& PassBuilder::reads(Buffer buffer, Access access, const BufferRange& range, Where where) {
-    builder_->add_access(pass_, buffer, ResourceKind::buffer,
-                         {.access = access, .direction = Direction::read, .buffer_range = range, .where = where});
+    builder_->add_access(pass_, buffer, ResourceKind::buffer, access, Direction::read, where).buffer_range = range;
     return *this;
 }
 PassBuilder& PassBuilder::writes(Image& image, Access access, const ImageUse& use, Where where) {
-    builder_->add_access(pass_, image, ResourceKind::image,
-                         {.access = access,
-                          .direction = Direction::replace,
-                          .clears = use.clear.has_value(),
-                          .clear = use.clear.value_or(VkClearValue{}),
-                          .image_range = use.range,
-                          .where = where});
+    AccessDesc& added = builder_->add_access(pass_, image, ResourceKind::image, access, Direction::replace, where);
+    added.image_range = use.range;
+    added.clears = use.clear.has_value();
+    added.clear = use.clear.value_or(VkClearValue{});
     return *this;
 }
 PassBuilder& PassBuilder::writes(Buffer& buffer, Access access, const BufferRange& range, Where where) {
-    builder_->add_access(pass_, buffer, ResourceKind::buffer,
-                         {.access = access, .direction = Direction::replace, .buffer_range = range, .where = where});
+    builder_->add_access(pass_, buffer, ResourceKind::buffer, access, Direction::replace, where).buffer_range = range;
     return *this;
 }
 PassBuilder& PassBuilder::modifies(Image& image, Access access, const ImageRange& range, Where where) {
-    builder_->add_access(pass_, image, ResourceKind::image,
-                         {.access = access, .direction = Direction::modify, .image_range = range, .where = where});
+    builder_->add_access(pass_, image, ResourceKind::image, access, Direction::modify, where).image_range = range;
     return *this;
 }
 PassBuilder& PassBuilder::modifies(Buffer& buffer, Access access, const BufferRange& range, Where where) {
-    builder_->add_access(pass_, buffer, ResourceKind::buffer,
-                         {.access = access, .direction = Direction::modify, .buffer_range = range, .where = where});
+    builder_->add_access(pass_, buffer, ResourceKind::buffer, access, Direction::modify, where).buffer_range = range;
     return *this;
 }
 

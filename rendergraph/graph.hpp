@@ -185,8 +185,10 @@ private:
     template <typename Handle>
     [[nodiscard]] bool check_handle(const Handle& handle, ResourceKind kind, std::uint32_t pass, Where where);
     void report_unknown(bool initialised, std::uint32_t pass, Where where);
+    /// The new access, whose range the caller fills in where it lies.
     template <typename Handle>
-    void add_access(std::uint32_t pass, Handle& handle, ResourceKind kind, AccessDesc access);
+    AccessDesc& add_access(std::uint32_t pass, Handle& handle, ResourceKind kind, Access access, Direction direction,
+                           Where where);
     template <typename Handle>
     Handle add_resource(std::string_view name, ResourceKind kind, Where where);
     void import_last_resource(const ImportDesc& import);
@@ -200,6 +202,7 @@ private:
     GraphDesc desc_;
     std::vector<std::uint32_t> latest_version_; ///< per resource
     PassCallbacks callbacks_;
+    AccessDesc refused_; ///< what a call with an unknown handle fills in
 };
 
 template <typename F>

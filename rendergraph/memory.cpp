@@ -9,6 +9,7 @@
 #include "rendergraph/formats.hpp"
 #include "rendergraph/limits.hpp"
 #include "rendergraph/memory_types.hpp"
+#include "rendergraph/radix_sort.hpp"
 
 namespace tyndall::rg {
 
@@ -22,6 +23,9 @@ MemoryRequirements estimate_memory(const GraphDesc& graph) {
         return (std::min(size, too_many_bytes) + alignment - 1) / alignment * alignment;
     };
     const auto times = [](VkDeviceSize a, VkDeviceSize b) {
+        if ((a | b) >> 32U == 0) { // their product is a number; a division is slow
+            return std::min(a * b, too_many_bytes);
+        }
         return b != 0 && a > too_many_bytes / b ? too_many_bytes : a * b;
     };
     MemoryRequirements requirements;
@@ -107,6 +111,18 @@ std::uint32_t heap_of(std::vector<Heap>& heaps, std::uint32_t memory_type_bits) 
         heaps.push_back({memory_type_bits, 0});
     }
     return heap;
+}
+
+/// Those that begin together stay as they are, by resource.
+Scratch<Block> by_first_slot(std::span<const Block> blocks) {
+    Scratch<Keyed> keyed(blocks.size());
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+        keyed[i] = {blocks[i].first_slot, i};
+    }
+    sort_by_key(keyed);
+    Scratch<Block> sorted(blocks.size());
+    std::transform(keyed.begin(), keyed.end(), sorted.begin(), [&](const Keyed& block) { return blocks[block.value]; });
+    return sorted;
 }
 
 /// One behind the other.
@@ -260,8 +276,8 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
     memory.placements.resize(count);
     memory.first_owner_before.resize(count, 0);
     memory.owner_before_count.resize(count, 0);
-    Scratch<Block> blocks;
-    blocks.reserve(count);
+    Scratch<Block> found;
+    found.reserve(count);
     for (std::uint32_t resource = 0; resource < count; ++resource) {
         const ResourceDesc& desc = graph.resources[resource];
         Placement& placement = memory.placements[resource];
@@ -292,12 +308,12 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
             placement.kind = PlacementKind::heap;
             const MemoryRequirement& need = requirements.of_resource[resource];
             // Buffers and images never share a page of bufferImageGranularity: both keep to whole pages.
-            blocks.push_back({.resource = resource,
-                              .heap = heap_of(memory.heaps, need.memory_type_bits),
-                              .size_bytes = align_up(need.size_bytes, requirements.buffer_image_granularity),
-                              .alignment = std::max(need.alignment, requirements.buffer_image_granularity),
-                              .first_slot = schedule.uses[first].slot,
-                              .last_slot = schedule.uses[end - 1].slot});
+            found.push_back({.resource = resource,
+                             .heap = heap_of(memory.heaps, need.memory_type_bits),
+                             .size_bytes = align_up(need.size_bytes, requirements.buffer_image_granularity),
+                             .alignment = std::max(need.alignment, requirements.buffer_image_granularity),
+                             .first_slot = schedule.uses[first].slot,
+                             .last_slot = schedule.uses[end - 1].slot});
         }
     }
     for (const AccessDesc& access : graph.accesses) {
@@ -323,9 +339,7 @@ Memory place(const GraphDesc& graph, const QueueTopology& topology, const Schedu
         }
     }
 
-    std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) {
-        return a.first_slot != b.first_slot ? a.first_slot < b.first_slot : a.resource < b.resource;
-    });
+    const Scratch<Block> blocks = by_first_slot(found);
     const auto heap_count = static_cast<std::uint32_t>(memory.heaps.size());
     const Lives lives = find_lives(schedule, blocks);
     const Conflicts conflicts = find_conflicts(schedule, blocks, lives);

@@ -40,18 +40,22 @@ Scratch<std::uint32_t> first_after(const Schedule& schedule, const Scratch<Scrat
     return after;
 }
 
-struct Pair {
-    std::uint32_t a;
-    std::uint32_t b;
+/// For each block those before it that it conflicts with, in rows, each ascending.
+struct Earlier {
+    Scratch<std::uint32_t> first; ///< blocks + 1 entries into `with`
+    Scratch<std::uint32_t> with;
 };
 
-/// The pairs of blocks in conflict, `a` before `b`. Which blocks are done and which conflict is no pattern that a
-/// branch predictor could learn, so both are counted and nothing branches.
+/// Which blocks are done and which conflict is no pattern that a branch predictor could learn, so both are counted and
+/// nothing branches.
 template <typename QueueCount>
-Scratch<Pair> find_pairs(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives,
-                         QueueCount queues) {
-    Scratch<Pair> pairs(8 * blocks.size());
-    std::size_t pair_count = 0;
+Earlier find_earlier(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives, QueueCount queues) {
+    Earlier earlier;
+    earlier.first.reserve(blocks.size() + 1);
+    earlier.first.push_back(0);
+    Scratch<std::uint32_t>& with = earlier.with;
+    with.resize(8 * blocks.size());
+    std::size_t count = 0;
     Scratch<std::uint32_t> active(blocks.size()); // what something still to come may meet
     Scratch<std::uint32_t> active_after(blocks.size() *
                                         queues); // beside it, by queue: the first position after its uses
@@ -62,12 +66,12 @@ Scratch<Pair> find_pairs(const Schedule& schedule, std::span<const Block> blocks
         for (; slot < blocks[block].first_slot; ++slot) {
             ++frontier[schedule.queue[slot]];
         }
-        if (pairs.size() < pair_count + active_count) {
-            pairs.resize(2 * pairs.size() + active_count);
+        if (with.size() < count + active_count) {
+            with.resize(2 * with.size() + active_count);
         }
         const std::uint32_t* const first = lives.first.data() + std::size_t{block} * queues;
         const std::uint32_t heap = blocks[block].heap;
-        Pair* pair = pairs.data() + pair_count;
+        std::uint32_t* conflict = with.data() + count;
         std::uint32_t* kept = active.data();
         std::uint32_t* kept_after = active_after.data();
         const std::uint32_t* after = active_after.data();
@@ -80,19 +84,20 @@ Scratch<Pair> find_pairs(const Schedule& schedule, std::span<const Block> blocks
                 before_block &= first[q] >= after[q]; // always where it is `none`
                 kept_after[q] = after[q];
             }
-            *pair = {other, block};
-            pair += static_cast<std::ptrdiff_t>(!before_block & (blocks[other].heap == heap));
+            *conflict = other;
+            conflict += static_cast<std::ptrdiff_t>(!before_block & (blocks[other].heap == heap));
             *kept = other;
             kept += static_cast<std::ptrdiff_t>(!before_all_to_come);
             kept_after += before_all_to_come ? 0 : std::size_t{queues};
         }
-        pair_count = static_cast<std::size_t>(pair - pairs.data());
+        count = static_cast<std::size_t>(conflict - with.data());
+        earlier.first.push_back(static_cast<std::uint32_t>(count));
         std::copy_n(lives.after.data() + std::size_t{block} * queues, std::size_t{queues}, kept_after);
         *kept = block;
         active_count = static_cast<std::size_t>(kept - active.data()) + 1;
     }
-    pairs.resize(pair_count);
-    return pairs;
+    with.resize(count);
+    return earlier;
 }
 
 } // namespace
@@ -137,24 +142,30 @@ Lives find_lives(const Schedule& schedule, std::span<const Block> blocks) {
 }
 
 Conflicts find_conflicts(const Schedule& schedule, std::span<const Block> blocks, const Lives& lives) {
-    Scratch<Pair> pairs;
+    Earlier earlier;
     switch (schedule.queue_count) { // a number that the compiler knows saves half of the time
-    case 1: pairs = find_pairs(schedule, blocks, lives, std::integral_constant<std::uint32_t, 1>{}); break;
-    case 2: pairs = find_pairs(schedule, blocks, lives, std::integral_constant<std::uint32_t, 2>{}); break;
-    default: pairs = find_pairs(schedule, blocks, lives, schedule.queue_count); break;
+    case 1: earlier = find_earlier(schedule, blocks, lives, std::integral_constant<std::uint32_t, 1>{}); break;
+    case 2: earlier = find_earlier(schedule, blocks, lives, std::integral_constant<std::uint32_t, 2>{}); break;
+    default: earlier = find_earlier(schedule, blocks, lives, schedule.queue_count); break;
     }
-    Conflicts conflicts{Scratch<std::uint32_t>(blocks.size() + 1, 0), Scratch<std::uint32_t>(2 * pairs.size())};
-    for (const Pair& pair : pairs) {
-        ++conflicts.first[pair.a + 1];
-        ++conflicts.first[pair.b + 1];
+    // Each row: the earlier blocks, which are there, then the later ones, which follow one another.
+    Conflicts conflicts{Scratch<std::uint32_t>(blocks.size() + 1, 0), Scratch<std::uint32_t>(2 * earlier.with.size())};
+    for (const std::uint32_t other : earlier.with) {
+        ++conflicts.first[other + 1];
     }
-    for (std::size_t i = 1; i < conflicts.first.size(); ++i) {
-        conflicts.first[i] += conflicts.first[i - 1];
+    Scratch<std::uint32_t> next(blocks.size());
+    for (std::uint32_t block = 0; block < blocks.size(); ++block) {
+        const std::uint32_t earlier_count = earlier.first[block + 1] - earlier.first[block];
+        next[block] = conflicts.first[block] + earlier_count;
+        conflicts.first[block + 1] += next[block];
     }
-    Scratch<std::uint32_t> next(conflicts.first.begin(), conflicts.first.end() - 1);
-    for (const Pair& pair : pairs) {
-        conflicts.with[next[pair.a]++] = pair.b;
-        conflicts.with[next[pair.b]++] = pair.a;
+    for (std::uint32_t block = 0; block < blocks.size(); ++block) {
+        std::uint32_t* to = conflicts.with.data() + conflicts.first[block];
+        for (std::uint32_t i = earlier.first[block]; i < earlier.first[block + 1]; ++i) {
+            const std::uint32_t other = earlier.with[i];
+            *to++ = other;
+            conflicts.with[next[other]++] = block;
+        }
     }
     return conflicts;
 }
@@ -168,7 +179,10 @@ VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& con
     for (std::uint32_t block = 0; block < blocks.size(); ++block) {
         starts[block] = {blocks[block].size_bytes, block};
         for (const std::uint32_t other : conflicts.of(block)) {
-            starts[block].weight += other < block ? blocks[other].size_bytes : 0;
+            if (other > block) {
+                break;
+            }
+            starts[block].weight += blocks[other].size_bytes;
         }
     }
     const std::size_t tries =
@@ -207,11 +221,14 @@ VkDeviceSize exclusive_bytes(std::span<const Block> blocks, const Conflicts& con
     for (const Start& start : std::span(starts).first(tries)) {
         const std::span<const std::uint32_t> as_they_come = conflicts.of(start.block);
         grow(start.block, as_they_come);
-        by_size.assign(as_they_come.begin(), as_they_come.end());
-        std::sort(by_size.begin(), by_size.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto larger = [&](std::uint32_t a, std::uint32_t b) {
             return blocks[a].size_bytes != blocks[b].size_bytes ? blocks[a].size_bytes > blocks[b].size_bytes : a < b;
-        });
-        grow(start.block, by_size);
+        };
+        if (!std::is_sorted(as_they_come.begin(), as_they_come.end(), larger)) {
+            by_size.assign(as_they_come.begin(), as_they_come.end());
+            std::sort(by_size.begin(), by_size.end(), larger);
+            grow(start.block, by_size);
+        }
     }
     return std::accumulate(largest.begin(), largest.end(), VkDeviceSize{0});
 }

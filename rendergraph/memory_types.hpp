@@ -34,7 +34,7 @@ struct Lives {
 /// O(uses x queues x log slots).
 [[nodiscard]] Lives find_lives(const Schedule& schedule, std::span<const Block> blocks);
 
-/// For each block those that may not share bytes with it, in rows: `of(block)`.
+/// For each block those that may not share bytes with it, in rows, each ascending: `of(block)`.
 struct Conflicts {
     Scratch<std::uint32_t> first; ///< blocks + 1 entries into `with`
     Scratch<std::uint32_t> with;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "rendergraph/assign.hpp"
+#include "rendergraph/radix_sort.hpp"
 
 namespace tyndall::rg::stages {
 namespace {
@@ -93,10 +94,15 @@ Urgency urgency_of(const Work& work, const Costs& costs) {
             before = std::max(before, rank[item] + mean);
         }
     }
-    urgency.items.resize(rank.size());
-    std::iota(urgency.items.begin(), urgency.items.end(), 0U);
-    std::sort(urgency.items.begin(), urgency.items.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return rank[a] != rank[b] ? rank[a] > rank[b] : a < b; });
+    Scratch<Keyed> keyed(rank.size());
+    for (std::uint32_t item = 0; item < rank.size(); ++item) {
+        keyed[item] = {~static_cast<std::uint64_t>(rank[item]), item}; // no rank is negative
+    }
+    sort_by_key(keyed);
+    urgency.items.reserve(rank.size());
+    for (const Keyed& item : keyed) {
+        urgency.items.push_back(item.value);
+    }
     return urgency;
 }
 

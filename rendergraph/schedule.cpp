@@ -47,14 +47,15 @@ void collect_uses(const GraphDesc& graph, const Cells& cells, Schedule& schedule
                 merged.reads = merged.reads || is_read(access.direction);
                 merged.writes = merged.writes || is_write(access.direction);
             } else {
-                schedule.uses[end[access.resource]++] = {slot,
-                                                         schedule.order[slot],
-                                                         access.resource,
-                                                         schedule.queue[slot],
-                                                         cells.of_access[i],
-                                                         scope,
-                                                         is_read(access.direction),
-                                                         is_write(access.direction)};
+                Use& fresh = schedule.uses[end[access.resource]++]; // filled where it lies
+                fresh.slot = slot;
+                fresh.pass = schedule.order[slot];
+                fresh.resource = access.resource;
+                fresh.queue = schedule.queue[slot];
+                fresh.cells = cells.of_access[i];
+                fresh.scope = scope;
+                fresh.reads = is_read(access.direction);
+                fresh.writes = is_write(access.direction);
             }
         }
     }
@@ -269,7 +270,8 @@ void derive_waits(const Scratch<SlotEdge>& edges, Schedule& schedule) {
 
 void CellUses::sort(const ResourceCells& cells, std::span<const Use> uses) {
     if (cells.whole) {
-        first_ = {0, static_cast<std::uint32_t>(uses.size())};
+        first_.assign(2, 0);
+        first_[1] = static_cast<std::uint32_t>(uses.size());
         uses_.resize(uses.size());
         std::transform(uses.begin(), uses.end(), uses_.begin(), [](const Use& use) { return &use; });
         return;

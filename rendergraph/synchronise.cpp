@@ -235,7 +235,7 @@ private:
 
     FoundDependency build(std::uint32_t resource, const Before& before, const Group& group, const Use& consumer,
                           bool transition) const {
-        FoundDependency made{.slot = consumer.slot};
+        FoundDependency made = found_before(consumer.slot);
         Dependency& d = made.dependency;
         d.resource = resource;
         d.consumer = consumer.pass;
@@ -360,7 +360,7 @@ private:
         if (!transition && !transfers && needs_nothing) {
             return;
         }
-        FoundDependency made{.slot = exit_slot_};
+        FoundDependency made = found_before(exit_slot_);
         Dependency& d = made.dependency;
         d.resource = resource;
         d.hazard = hazard;

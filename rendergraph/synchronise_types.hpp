@@ -117,6 +117,14 @@ struct FoundDependency {
     std::uint32_t after_passes = 0; ///< its producers of its own queue are among that queue's first so many passes
 };
 
+/// Nothing yet, before a slot.
+[[nodiscard]] inline FoundDependency found_before(std::uint32_t slot) {
+    static constexpr FoundDependency empty; // copying one is quicker than making one
+    FoundDependency found = empty;
+    found.slot = slot;
+    return found;
+}
+
 /// Takes away what other barriers of the queue, recorded between producer and consumer, order anyway: from
 /// dependencies that carry no memory, single stages; all of one where nothing of it is left, whose dst_stages are 0
 /// then. `order` are indices into `found` by slot. O(found x stages), squared within a slot.

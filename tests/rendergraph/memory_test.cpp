@@ -351,5 +351,52 @@ TEST(Memory, PackingsOfUpToSevenBlocksAreOptimal) {
     EXPECT_GT(above_the_largest_block, 100U);
 }
 
+TEST(Memory, HundredsOfBlocksKeepApartWhatConflicts) {
+    std::minstd_rand engine(6);
+    const auto random = [&] { return static_cast<std::uint32_t>(engine()); };
+    for (int round = 0; round < 40; ++round) {
+        const std::uint32_t count = 100 + random() % 300;
+        const std::uint32_t reach = 1 + random() % 60; // how far apart two may be that conflict
+        std::vector<stages::Block> blocks(count);
+        std::vector<std::vector<std::uint32_t>> with(count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            blocks[i] = {.heap = random() % 4 == 0 ? 1U : 0U,
+                         .size_bytes = (1 + random() % 9) * VkDeviceSize{4096},
+                         .alignment = VkDeviceSize{4096} << random() % 3,
+                         .first_slot = i,
+                         .last_slot = i + random() % reach};
+            for (std::uint32_t k = i - std::min(i, reach); k < i; ++k) {
+                if (blocks[k].heap == blocks[i].heap && random() % 3 != 0) {
+                    with[i].push_back(k);
+                    with[k].push_back(i);
+                }
+            }
+        }
+        stages::Conflicts conflicts{{0}, {}};
+        for (const std::vector<std::uint32_t>& row : with) {
+            conflicts.with.insert(conflicts.with.end(), row.begin(), row.end());
+            conflicts.first.push_back(static_cast<std::uint32_t>(conflicts.with.size()));
+        }
+        for (const Effort effort : {Effort::quick, Effort::thorough}) {
+            const stages::Packing packing = stages::pack(blocks, conflicts, 2, 0, effort);
+            VkDeviceSize end[2] = {0, 0};
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const VkDeviceSize begin = packing.offset_bytes[i];
+                ASSERT_EQ(begin % blocks[i].alignment, 0U);
+                end[blocks[i].heap] = std::max(end[blocks[i].heap], begin + blocks[i].size_bytes);
+                for (const std::uint32_t other : with[i]) {
+                    ASSERT_TRUE(packing.offset_bytes[other] + blocks[other].size_bytes <= begin ||
+                                begin + blocks[i].size_bytes <= packing.offset_bytes[other])
+                        << "round " << round << ", blocks " << i << " and " << other;
+                }
+            }
+            EXPECT_EQ(packing.heap_bytes[0], end[0]);
+            EXPECT_EQ(packing.heap_bytes[1], end[1]);
+            EXPECT_EQ(packing.total_bytes, end[0] + end[1]);
+            EXPECT_GE(packing.total_bytes, packing.bound_bytes);
+        }
+    }
+}
+
 } // namespace
 } // namespace tyndall::rg::test
