@@ -167,7 +167,8 @@ public:
     /// The device's queues as logical queues: the topology on which a plan overlaps for real.
     [[nodiscard]] QueueTopology topology() const;
 
-    /// Waits until the frame slot is free, records and submits the plan. Returns the frame's number, from 1.
+    /// Waits until the frame slot is free, records and submits the plan. Returns the frame's number, from 1. Recording
+    /// is on the calling thread, one callback after another, so callbacks need no locks (docs/measurements.md: why).
     [[nodiscard]] tl::expected<std::uint64_t, ExecuteError> submit(const GraphDesc& graph, const Plan& plan,
                                                                    const PassCallbacks& callbacks,
                                                                    std::span<const ImportBinding> imports);

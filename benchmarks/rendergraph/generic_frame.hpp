@@ -1,5 +1,5 @@
-// The frame that compile and verify are measured with: each pass reads 2 of the last 16 outputs and writes one, a
-// quarter is free to run on async compute, a tenth has no consumer.
+// The frame that compile, verify and recording are measured with: each pass reads 2 of the last 16 outputs and writes
+// one, a quarter is free to run on async compute, a tenth has no consumer.
 #pragma once
 
 #include <random>
@@ -22,8 +22,14 @@ inline std::vector<std::string> names(const char* kind, std::size_t count) {
     return out;
 }
 
-inline DeclaredGraph generic_frame(const std::vector<std::string>& pass_names,
-                                   const std::vector<std::string>& image_names) {
+struct RecordsNothing {
+    void operator()(PassContext&, Image output) const { benchmark::DoNotOptimize(&output); }
+};
+
+/// `body` is what each pass but the last records, given its output.
+template <typename Body = RecordsNothing>
+DeclaredGraph generic_frame(const std::vector<std::string>& pass_names, const std::vector<std::string>& image_names,
+                            Body body = {}) {
     std::minstd_rand random(1); // cheap, so that declaring is what is timed
     GraphBuilder graph;
     const auto count = static_cast<std::uint32_t>(pass_names.size());
@@ -36,7 +42,7 @@ inline DeclaredGraph generic_frame(const std::vector<std::string>& pass_names,
             const std::size_t back = (random() % (std::min<std::size_t>(recent.size(), 16) / 2 + 1)) * 2 + k;
             pass.reads(recent[recent.size() - 1 - std::min(back, recent.size() - 1 - k)], Access::sampled_compute);
         }
-        pass.writes(out, Access::storage_compute).executes([out](PassContext&) { benchmark::DoNotOptimize(&out); });
+        pass.writes(out, Access::storage_compute).executes([out, body](PassContext& ctx) { body(ctx, out); });
         if (random() % 4 != 0) {
             pass.on_queue(QueueWish::graphics);
         }

@@ -38,7 +38,8 @@ public:
     void ReportRuns(const std::vector<Run>& runs) override {
         ConsoleReporter::ReportRuns(runs);
         for (const Run& run : runs) {
-            if (run.run_type == Run::RT_Iteration && !run.error_occurred) {
+            const bool of_passes = run.counters.find("per_pass") != run.counters.end();
+            if (run.run_type == Run::RT_Iteration && !run.error_occurred && of_passes) {
                 families_[run.run_name.function_name].push_back(
                     {std::stod(run.run_name.args), run.GetAdjustedCPUTime()});
             }
