@@ -1,6 +1,8 @@
 // Whether the attachments of one pass can be rendered to together.
 // In: the declared graph and a pass. Out: the mistakes, at the end of those known. O(accesses of the pass).
 #include <algorithm>
+#include <iterator>
+#include <span>
 
 #include "rendergraph/stages.hpp"
 
@@ -32,11 +34,45 @@ std::string text_of(const std::string& name, const Target& target) {
            std::to_string(target.layers) + " layers, " + std::to_string(target.samples) + " samples)";
 }
 
+/// Each resolve attachment takes the multisampled colour attachment of its own number.
+template <typename Bad>
+void validate_resolves(const GraphDesc& graph, const PassDesc& pass, const Bad& bad) {
+    const auto accesses = std::span(graph.accesses).subspan(pass.first_access, pass.access_count);
+    const auto is_source = [&](const AccessDesc& access) {
+        return access.access == Access::color_attachment &&
+               graph.resources[access.resource].image.samples != VK_SAMPLE_COUNT_1_BIT;
+    };
+    auto source = std::find_if(accesses.begin(), accesses.end(), is_source);
+    for (const AccessDesc& access : accesses) {
+        if (access.access != Access::resolve_attachment ||
+            graph.resources[access.resource].kind != ResourceKind::image) {
+            continue;
+        }
+        const ResourceDesc& target = graph.resources[access.resource];
+        if (source == accesses.end()) {
+            bad(access, nullptr,
+                "'" + target.name +
+                    "' as resolve_attachment, for which no color_attachment with several samples is left; declare "
+                    "what is resolved into it");
+            continue;
+        }
+        const ResourceDesc& resolved = graph.resources[source->resource];
+        if (resolved.image.format != target.image.format) {
+            bad(access, &*source,
+                "'" + target.name + "' as resolve_attachment of '" + resolved.name +
+                    "', which has another format; make them equal");
+        }
+        source = std::find_if(std::next(source), accesses.end(), is_source);
+    }
+}
+
 } // namespace
 
 void validate_attachments(const GraphDesc& graph, const PassDesc& pass, Diagnostics& errors) {
     const AccessDesc* first = nullptr;
+    const AccessDesc* first_drawn = nullptr; // whose samples all that is drawn to shares
     const AccessDesc* depth = nullptr;
+    bool any_resolves = false;
     const auto bad = [&](const AccessDesc& access, const AccessDesc* other, const std::string& what) {
         const ResourceDesc& resource = graph.resources[access.resource];
         errors.push_back({.code = DiagnosticCode::attachment_mismatch,
@@ -72,19 +108,21 @@ void validate_attachments(const GraphDesc& graph, const PassDesc& pass, Diagnost
                     "'; split the pass");
         }
         depth = is_depth && depth == nullptr ? &access : depth;
-        if (first == nullptr) {
-            first = &access;
-            continue;
-        }
-        const Target other = target_of(*first, graph.resources[first->resource].image);
-        const bool one_resolves = resolves || first->access == Access::resolve_attachment;
+        any_resolves = any_resolves || resolves;
+        first = first == nullptr ? &access : first;
+        first_drawn = first_drawn == nullptr && !resolves ? &access : first_drawn;
+        const AccessDesc& compared_with = resolves || first_drawn == nullptr ? *first : *first_drawn;
+        const Target other = target_of(compared_with, graph.resources[compared_with.resource].image);
         Target compared = target;
-        compared.samples = one_resolves ? other.samples : target.samples;
+        compared.samples = resolves ? other.samples : target.samples;
         if (compared != other) {
-            bad(access, first,
-                text_of(graph.resources[first->resource].name, other) + " and " + text_of(resource.name, target) +
-                    "; make them equal");
+            bad(access, &compared_with,
+                text_of(graph.resources[compared_with.resource].name, other) + " and " +
+                    text_of(resource.name, target) + "; make them equal");
         }
+    }
+    if (any_resolves) {
+        validate_resolves(graph, pass, bad);
     }
 }
 

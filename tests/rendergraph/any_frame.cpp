@@ -223,6 +223,16 @@ private:
         }
     }
 
+    /// An image of several samples, that this pass alone draws to.
+    void declare_resolved(PassBuilder& pass, const Known& target, const Box& box) {
+        ImageDesc desc = target.image_desc;
+        desc.layers = box.end_b - box.first_b;
+        desc.mips = 1;
+        desc.samples = VK_SAMPLE_COUNT_4_BIT;
+        Image drawn = graph_.create_image("drawn " + std::to_string(drawn_count_++), desc);
+        pass.writes(drawn, Access::color_attachment);
+    }
+
     bool try_access(PassBuilder& pass, PassKind kind, std::size_t index, bool writes) {
         Known& known = known_[index];
         if (writes && !known.writable) {
@@ -246,7 +256,9 @@ private:
             box.end_a = 1;
             const std::uint32_t layers = box.end_b - box.first_b;
             const bool fits_others = layers_ == 0 || layers == layers_;
-            if (!fits_others || (access == Access::depth_attachment && has_depth_)) {
+            const bool resolves = access == Access::resolve_attachment; // all that is drawn to has several samples
+            const bool same_samples = layers_ == 0 || resolves == resolves_;
+            if (!fits_others || !same_samples || (access == Access::depth_attachment && has_depth_)) {
                 return false;
             }
             if (!std::none_of(used_.begin(), used_.end(),
@@ -267,11 +279,15 @@ private:
         if (writes && first_use && kind != PassKind::host && bits_.below(4) == 0 && known.is_written(box)) {
             snapshots_.push_back(known); // a later pass may ask for what this write overwrites
         }
+        if (access == Access::resolve_attachment) {
+            declare_resolved(pass, known, box);
+        }
         declare(pass, known, access, direction, box);
         known.idle_before = false;
         used_.push_back({index, box});
         layers_ = is_attachment(access) ? box.end_b - box.first_b : layers_;
         has_depth_ = has_depth_ || access == Access::depth_attachment;
+        resolves_ = resolves_ || access == Access::resolve_attachment;
         return true;
     }
 
@@ -284,6 +300,7 @@ private:
         may_leave_graphics_ = true;
         layers_ = 0;
         has_depth_ = false;
+        resolves_ = false;
         for (std::uint32_t reads = bits_.below(4); reads > 0; --reads) {
             try_access(pass, kind, bits_.below(static_cast<std::uint32_t>(known_.size())), false);
         }
@@ -375,6 +392,8 @@ private:
     bool may_leave_graphics_ = true; ///< what it does, any compute queue can
     std::uint32_t layers_ = 0;       ///< of its attachments, 0: it has none yet
     bool has_depth_ = false;         ///< a depth attachment
+    bool resolves_ = false;          ///< resolve attachments, and nothing else but what is resolved
+    std::uint32_t drawn_count_ = 0;
     QueueTopology topology_;
     GraphBuilder graph_;
     std::vector<Known> known_;

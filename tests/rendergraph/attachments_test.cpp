@@ -6,7 +6,7 @@ namespace {
 
 constexpr ImageDesc layered = {.format = VK_FORMAT_R8G8B8A8_UNORM, .extent = {64, 64, 1}, .layers = 4};
 constexpr ImageDesc multisampled = {
-    .format = VK_FORMAT_R8G8B8A8_UNORM, .extent = {64, 64, 1}, .samples = VK_SAMPLE_COUNT_4_BIT};
+    .format = VK_FORMAT_R16G16B16A16_SFLOAT, .extent = {64, 64, 1}, .samples = VK_SAMPLE_COUNT_4_BIT};
 constexpr ImageDesc depth = {.format = VK_FORMAT_D32_SFLOAT, .extent = {64, 64, 1}};
 
 TEST(AttachmentMistakes, Layers) {
@@ -86,6 +86,66 @@ TEST(AttachmentMistakes, ResolveIntoSeveralSamples) {
         "Pass 'draw' renders to 'target' as resolve_attachment, which has several samples itself; resolve into an "
         "image with one",
         used, made);
+}
+
+TEST(AttachmentMistakes, ResolveOfNothing) {
+    GraphBuilder graph;
+    Image color = graph.create_image("color", multisampled);
+    Image one = graph.create_image("one", color_image(64, 64));
+    const unsigned made = __LINE__ + 1;
+    Image two = graph.create_image("two", color_image(64, 64));
+    PassBuilder pass = graph.add_pass("draw", PassKind::graphics);
+    pass.writes(color, Access::color_attachment).writes(one, Access::resolve_attachment).has_side_effect("test");
+    const unsigned used = __LINE__ + 1;
+    pass.writes(two, Access::resolve_attachment);
+    expect_one(mistakes(graph), DiagnosticCode::attachment_mismatch,
+               "Pass 'draw' renders to 'two' as resolve_attachment, for which no color_attachment with several samples "
+               "is left; declare what is resolved into it",
+               used, made);
+    GraphBuilder without;
+    Image plain = without.create_image("plain", color_image(64, 64));
+    one = without.create_image("one", color_image(64, 64));
+    without.add_pass("draw", PassKind::graphics)
+        .writes(one, Access::resolve_attachment)
+        .writes(plain, Access::color_attachment)
+        .has_side_effect("test");
+    EXPECT_EQ(mistakes(without).size(), 1U);
+}
+
+TEST(AttachmentMistakes, ResolveIntoAnotherFormat) {
+    GraphBuilder graph;
+    Image color = graph.create_image("color", multisampled);
+    ImageDesc other = color_image(64, 64);
+    other.format = VK_FORMAT_R8G8B8A8_UNORM;
+    Image target = graph.create_image("target", other);
+    PassBuilder pass = graph.add_pass("draw", PassKind::graphics);
+    pass.has_side_effect("test");
+    const unsigned first = __LINE__ + 1;
+    pass.writes(color, Access::color_attachment);
+    const unsigned second = __LINE__ + 1;
+    pass.writes(target, Access::resolve_attachment);
+    expect_one(mistakes(graph), DiagnosticCode::attachment_mismatch,
+               "Pass 'draw' renders to 'target' as resolve_attachment of 'color', which has another format; make them "
+               "equal",
+               second, first);
+}
+
+/// What is resolved into comes first; the two that are drawn to are compared with each other.
+TEST(AttachmentMistakes, SamplesBehindAResolve) {
+    GraphBuilder graph;
+    Image target = graph.create_image("target", color_image(64, 64));
+    Image color = graph.create_image("color", multisampled);
+    Image plain = graph.create_image("plain", color_image(64, 64));
+    PassBuilder pass = graph.add_pass("draw", PassKind::graphics);
+    pass.writes(target, Access::resolve_attachment).has_side_effect("test");
+    const unsigned first = __LINE__ + 1;
+    pass.writes(color, Access::color_attachment);
+    const unsigned second = __LINE__ + 1;
+    pass.writes(plain, Access::color_attachment);
+    expect_one(mistakes(graph), DiagnosticCode::attachment_mismatch,
+               "Pass 'draw' renders to 'color' (64x64, 1 layers, 4 samples) and 'plain' (64x64, 1 layers, 1 samples); "
+               "make them equal",
+               second, first);
 }
 
 TEST(AttachmentMistakes, SeveralSamplesWithMips) {
