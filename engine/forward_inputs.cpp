@@ -66,7 +66,7 @@ void ForwardInputs::declare(rg::PassBuilder& pass) const {
     }
 }
 
-void ForwardInputs::push(rg::PassContext& ctx, VkPipelineLayout layout) const {
+void ForwardInputs::push(rg::PassContext& ctx, const Program& program) const {
     std::array<rg::Binding, 11> bindings;
     std::size_t count = 0;
     const auto bind = [&](const rg::Binding& binding) { bindings[count++] = binding; };
@@ -91,7 +91,7 @@ void ForwardInputs::push(rg::PassContext& ctx, VkPipelineLayout layout) const {
         bind(ctx.sampled(9, local_shadows->maps, nearest_sampler, {.type = VK_IMAGE_VIEW_TYPE_2D_ARRAY}));
         bind(ctx.storage(10, local_shadows->records));
     }
-    ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, std::span(bindings).first(count));
+    ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0, std::span(bindings).first(count), *program.bindings);
 }
 
 } // namespace tyndall::engine

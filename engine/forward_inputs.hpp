@@ -27,7 +27,7 @@ struct ForwardInputs {
     void find(rg::Blackboard& blackboard, bool transparent);
     [[nodiscard]] ForwardVariant variant(bool transparent) const;
     void declare(rg::PassBuilder& pass) const;
-    void push(rg::PassContext& ctx, VkPipelineLayout layout) const;
+    void push(rg::PassContext& ctx, const Program& program) const;
 };
 
 } // namespace tyndall::engine

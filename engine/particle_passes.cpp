@@ -30,7 +30,13 @@ constexpr std::uint32_t groups_for(std::uint32_t items, std::uint32_t group) {
 struct BoundProgram {
     VkPipelineLayout layout;
     VkPipeline pipeline;
+    std::span<const rg::ReflectedBinding> bindings;
 };
+
+template <typename Program> // ParticlePasses::Program
+BoundProgram bound(const Program& program) {
+    return {program.layout.get(), program.pipeline.get(), program.pipeline.bindings()};
+}
 
 struct SortPush {
     std::uint32_t key_count = 0;
@@ -47,6 +53,10 @@ void push_constants(rg::PassContext& ctx, const BoundProgram& program, const Pus
     ctx.vk().CmdPushConstants(ctx.cmd(), program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
 }
 
+void push_bindings(rg::PassContext& ctx, const BoundProgram& program, std::span<const rg::Binding> bindings) {
+    ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings, program.bindings);
+}
+
 void dispatch(rg::PassContext& ctx, const BoundProgram& program, std::uint32_t groups) {
     ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
     ctx.vk().CmdDispatch(ctx.cmd(), groups, 1, 1);
@@ -58,7 +68,7 @@ void declare_sort_step(rg::GraphBuilder& graph, std::string_view name, rg::Buffe
     pass.modifies(keys, rg::Access::storage_compute);
     pass.executes([keys, program, push, groups](rg::PassContext& ctx) {
         const std::array bindings{ctx.storage(0, keys)};
-        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        push_bindings(ctx, program, bindings);
         push_constants(ctx, program, push);
         dispatch(ctx, program, groups);
     });
@@ -120,10 +130,9 @@ void ParticlePasses::declare_simulation(rg::GraphBuilder& graph, rg::Buffer fram
     pass.reads(frame, rg::Access::storage_compute)
         .writes(particles, rg::Access::storage_compute)
         .writes(keys, rg::Access::storage_compute);
-    pass.executes([frame, particles, keys, key_count,
-                   program = BoundProgram{simulation_.layout.get(), simulation_.pipeline.get()}](rg::PassContext& ctx) {
+    pass.executes([frame, particles, keys, key_count, program = bound(simulation_)](rg::PassContext& ctx) {
         const std::array bindings{ctx.storage(0, frame), ctx.storage(1, particles), ctx.storage(2, keys)};
-        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        push_bindings(ctx, program, bindings);
         dispatch(ctx, program, groups_for(key_count, simulation_group));
     });
 }
@@ -131,9 +140,6 @@ void ParticlePasses::declare_simulation(rg::GraphBuilder& graph, rg::Buffer fram
 void ParticlePasses::declare_sort(rg::GraphBuilder& graph, rg::Buffer& keys, std::uint32_t key_count) const {
     const std::uint32_t block = std::min(largest_block, key_count);
     const std::uint32_t blocks = key_count / block;
-    const auto bound = [](const Program& program) {
-        return BoundProgram{program.layout.get(), program.pipeline.get()};
-    };
     declare_sort_step(graph, "particle sort", keys, bound(sort_block_), {key_count, 0, 0}, blocks);
     // Runs of twice the length each time, until one run holds all.
     for (std::uint32_t sequence = 2 * block; sequence <= key_count; sequence *= 2) {
@@ -152,10 +158,9 @@ void ParticlePasses::declare_split(rg::GraphBuilder& graph, rg::Buffer keys, rg:
     pass.reads(keys, rg::Access::storage_compute)
         .reads(splits, rg::Access::storage_compute)
         .writes(draws, rg::Access::storage_compute);
-    pass.executes([keys, splits, draws, key_count, split_count,
-                   program = BoundProgram{split_.layout.get(), split_.pipeline.get()}](rg::PassContext& ctx) {
+    pass.executes([keys, splits, draws, key_count, split_count, program = bound(split_)](rg::PassContext& ctx) {
         const std::array bindings{ctx.storage(0, keys), ctx.storage(1, splits), ctx.storage(2, draws)};
-        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        push_bindings(ctx, program, bindings);
         push_constants(ctx, program, SplitPush{key_count, split_count});
         dispatch(ctx, program, groups_for(split_count + 1, split_group));
     });

@@ -301,7 +301,8 @@ void ParticleSystem::draw(rg::PassContext& ctx, const ParticleDraws& draws, cons
     const Program& program = programs_[program_for(surroundings)];
     const Pipeline& pipeline = program.pipelines.at(fog_of(surroundings));
     ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
-    ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout.get(), 0, std::span(bindings).first(count));
+    ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout.get(), 0, std::span(bindings).first(count),
+             pipeline.bindings());
     ctx.vk().CmdDrawIndirect(ctx.cmd(), ctx.buffer(draws.commands), interval * command_bytes, 1,
                              static_cast<std::uint32_t>(command_bytes));
 }

@@ -1,7 +1,9 @@
 #include "engine/pipelines.hpp"
 
 #include <array>
+#include <initializer_list>
 #include <string>
+#include <utility>
 
 namespace tyndall::engine {
 namespace {
@@ -42,6 +44,20 @@ private:
     VkShaderModule module_ = VK_NULL_HANDLE;
     VkResult result_ = VK_SUCCESS;
 };
+
+/// What the shaders of a pipeline bind.
+tl::expected<std::vector<rg::ReflectedBinding>, Error>
+reflect(std::initializer_list<std::span<const std::uint32_t>> shaders) {
+    std::vector<rg::ReflectedBinding> bindings;
+    for (const std::span<const std::uint32_t> spirv : shaders) {
+        const auto reflected = rg::reflect_bindings(spirv);
+        if (!reflected) {
+            return tl::unexpected(Error{"A shader module cannot be read: " + reflected.error()});
+        }
+        rg::merge_bindings(bindings, *reflected);
+    }
+    return bindings;
+}
 
 /// Constants in the shape that Vulkan wants; points into itself and into `constants`.
 struct Specialization {
@@ -107,6 +123,10 @@ tl::expected<PipelineLayout, Error> create_pipeline_layout(const Device& device,
 tl::expected<Pipeline, Error> create_compute_pipeline(const Device& device, VkPipelineCache cache,
                                                       VkPipelineLayout layout, std::span<const std::uint32_t> spirv,
                                                       std::span<const SpecializationConstant> constants) {
+    auto bindings = reflect({spirv});
+    if (!bindings) {
+        return tl::unexpected(bindings.error());
+    }
     const ShaderModule module(device, spirv);
     if (module.result() != VK_SUCCESS) {
         return tl::unexpected(failed("A shader module", module.result()));
@@ -120,7 +140,7 @@ tl::expected<Pipeline, Error> create_compute_pipeline(const Device& device, VkPi
     if (result != VK_SUCCESS) {
         return tl::unexpected(failed("A compute pipeline", result));
     }
-    return Pipeline(device, pipeline);
+    return Pipeline(device, pipeline, std::move(*bindings));
 }
 
 VkPipelineColorBlendAttachmentState laid_over(bool two_sources) {
@@ -137,9 +157,14 @@ VkPipelineColorBlendAttachmentState laid_over(bool two_sources) {
 
 tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkPipelineCache cache,
                                                        const GraphicsPipelineInfo& info) {
-    const ShaderModule vertex(device, info.vertex_spirv);
     const bool has_fragment = !info.fragment_spirv.empty();
-    const ShaderModule fragment(device, has_fragment ? info.fragment_spirv : info.vertex_spirv);
+    const std::span<const std::uint32_t> last_spirv = has_fragment ? info.fragment_spirv : info.vertex_spirv;
+    auto bindings = reflect({info.vertex_spirv, last_spirv});
+    if (!bindings) {
+        return tl::unexpected(bindings.error());
+    }
+    const ShaderModule vertex(device, info.vertex_spirv);
+    const ShaderModule fragment(device, last_spirv);
     if (vertex.result() != VK_SUCCESS || fragment.result() != VK_SUCCESS) {
         return tl::unexpected(
             failed("A shader module", vertex.result() != VK_SUCCESS ? vertex.result() : fragment.result()));
@@ -214,7 +239,7 @@ tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkP
     if (result != VK_SUCCESS) {
         return tl::unexpected(failed("A graphics pipeline", result));
     }
-    return Pipeline(device, pipeline);
+    return Pipeline(device, pipeline, std::move(*bindings));
 }
 
 tl::expected<DeviceSampler, Error> create_sampler(const Device& device, const VkSamplerCreateInfo& info) {

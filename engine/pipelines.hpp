@@ -11,6 +11,7 @@
 
 #include "engine/device.hpp"
 #include "engine/error.hpp"
+#include "rendergraph/shader_bindings.hpp"
 
 namespace tyndall::engine {
 
@@ -40,11 +41,25 @@ private:
     const Device* device_ = nullptr;
     T handle_ = VK_NULL_HANDLE;
 };
-using Pipeline = Unique<VkPipeline, &rg::DeviceTable::DestroyPipeline>;
 using PipelineLayout = Unique<VkPipelineLayout, &rg::DeviceTable::DestroyPipelineLayout>;
 using DescriptorSetLayout = Unique<VkDescriptorSetLayout, &rg::DeviceTable::DestroyDescriptorSetLayout>;
 using DescriptorPool = Unique<VkDescriptorPool, &rg::DeviceTable::DestroyDescriptorPool>;
 using DeviceSampler = Unique<VkSampler, &rg::DeviceTable::DestroySampler>;
+
+/// A pipeline and what its shaders bind, for PassContext::push.
+class Pipeline {
+public:
+    Pipeline() = default;
+    Pipeline(const Device& device, VkPipeline handle, std::vector<rg::ReflectedBinding> bindings)
+        : pipeline_(device, handle), bindings_(std::move(bindings)) {}
+    [[nodiscard]] VkPipeline get() const { return pipeline_.get(); }
+    /// Of all its stages, as rg::merge_bindings has them. They stay where they are when the pipeline is moved.
+    [[nodiscard]] std::span<const rg::ReflectedBinding> bindings() const { return bindings_; }
+
+private:
+    Unique<VkPipeline, &rg::DeviceTable::DestroyPipeline> pipeline_;
+    std::vector<rg::ReflectedBinding> bindings_;
+};
 
 /// VkPipelineCache kept in a file between runs. A file that is broken, or of another device or driver, is ignored.
 class PipelineCache {

@@ -123,12 +123,12 @@ tl::expected<void, Error> Renderer::declare_local_map(rg::GraphBuilder& graph, r
         .reads(records, rg::Access::storage_graphics)
         .reads(frame_.instances, rg::Access::storage_graphics);
     declare_geometry(pass, frame_.geometry, true);
-    pass.executes([draws = std::move(*draws), layout = program->layout, geometry = frame_.geometry, records,
+    pass.executes([draws = std::move(*draws), program = *program, geometry = frame_.geometry, records,
                    instances = frame_.instances, push = LocalShadowPush{map.record, map.side}](rg::PassContext& ctx) {
         const std::array<rg::Binding, 2> bindings = {ctx.storage(0, records), ctx.storage(1, instances)};
-        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, bindings);
-        ctx.vk().CmdPushConstants(ctx.cmd(), layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
-        DrawRecorder recorder(ctx, layout, geometry, true);
+        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0, bindings, *program.bindings);
+        ctx.vk().CmdPushConstants(ctx.cmd(), program.layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
+        DrawRecorder recorder(ctx, program.layout, geometry, true);
         for (const Draw& draw : draws) {
             recorder.draw(draw);
         }

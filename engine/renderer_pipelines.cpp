@@ -130,9 +130,9 @@ std::uint32_t RendererPipelines::unrolled_lights(const Device& device, std::uint
     return device.is_lavapipe() && device.info().mesa_major > 22 && light_count <= most ? light_count : 0;
 }
 
-tl::expected<VkPipelineLayout, Error> RendererPipelines::layout(const LayoutKey& key) {
+tl::expected<RendererPipelines::Layout*, Error> RendererPipelines::layout(const LayoutKey& key) {
     if (const auto found = layouts_.find(key); found != layouts_.end()) {
-        return found->second.pipeline.get();
+        return &found->second;
     }
     Bindings bindings;
     bool has_materials = false;
@@ -187,26 +187,26 @@ tl::expected<VkPipelineLayout, Error> RendererPipelines::layout(const LayoutKey&
     if (!pipeline) {
         return tl::unexpected(pipeline.error());
     }
-    const VkPipelineLayout handle = pipeline->get();
-    layouts_.emplace(key, Layout{std::move(*set), std::move(*pipeline)});
-    return handle;
+    return &layouts_.emplace(key, Layout{std::move(*set), std::move(*pipeline), {}}).first->second;
 }
 
 template <typename Make>
 tl::expected<Program, Error> RendererPipelines::find_or_make(const PipelineKey& key, Make&& make) {
-    const auto pipeline_layout = layout(key.layout);
-    if (!pipeline_layout) {
-        return tl::unexpected(pipeline_layout.error());
+    const auto shared = layout(key.layout);
+    if (!shared) {
+        return tl::unexpected(shared.error());
     }
+    Layout& of = **shared;
     auto found = pipelines_.find(key);
     if (found == pipelines_.end()) {
-        tl::expected<Pipeline, Error> made = make(*pipeline_layout);
+        tl::expected<Pipeline, Error> made = make(of.pipeline.get());
         if (!made) {
             return tl::unexpected(made.error());
         }
+        rg::merge_bindings(of.bindings, made->bindings());
         found = pipelines_.emplace(key, std::move(*made)).first;
     }
-    return Program{*pipeline_layout, found->second.get()};
+    return Program{of.pipeline.get(), found->second.get(), &of.bindings};
 }
 
 tl::expected<Program, Error> RendererPipelines::depth(DepthTarget target, bool mask, std::uint32_t features) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -47,6 +48,9 @@ enum class DepthTarget : std::uint8_t { view, cascade, local };
 struct Program {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
+    /// Of the shaders of all pipelines of the layout, which draw with what is pushed once. More are added as pipelines
+    /// are made, so it is looked at when a frame is recorded.
+    const std::vector<rg::ReflectedBinding>* bindings = nullptr;
 };
 
 class RendererPipelines {
@@ -100,9 +104,10 @@ private:
     struct Layout {
         DescriptorSetLayout set;
         PipelineLayout pipeline;
+        std::vector<rg::ReflectedBinding> bindings; ///< Program::bindings
     };
     [[nodiscard]] static std::uint32_t unrolled_lights(const Device& device, std::uint32_t light_count);
-    [[nodiscard]] tl::expected<VkPipelineLayout, Error> layout(const LayoutKey& key);
+    [[nodiscard]] tl::expected<Layout*, Error> layout(const LayoutKey& key);
     template <typename Make>
     [[nodiscard]] tl::expected<Program, Error> find_or_make(const PipelineKey& key, Make&& make);
     [[nodiscard]] tl::expected<Program, Error> compute(Kind kind, std::span<const std::uint32_t> spirv);

@@ -39,7 +39,7 @@ tl::expected<rg::Buffer, Error> Renderer::declare_exposure(rg::GraphBuilder& gra
     first.executes([=, program = *sums_program, sampler = nearest_sampler_.get()](rg::PassContext& ctx) {
         const std::array<rg::Binding, 2> bindings = {ctx.sampled(0, color, sampler), ctx.storage(1, sums)};
         ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
-        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings, *program.bindings);
         ctx.vk().CmdPushConstants(ctx.cmd(), program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof sums_push,
                                   &sums_push);
         ctx.vk().CmdDispatch(ctx.cmd(), partial_sums / group_size, 1, 1);
@@ -49,7 +49,7 @@ tl::expected<rg::Buffer, Error> Renderer::declare_exposure(rg::GraphBuilder& gra
     second.executes([=, program = *exposure_program](rg::PassContext& ctx) {
         const std::array<rg::Binding, 2> bindings = {ctx.storage(0, sums), ctx.storage(1, exposure)};
         ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
-        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings);
+        ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, bindings, *program.bindings);
         ctx.vk().CmdPushConstants(ctx.cmd(), program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof exposure_push,
                                   &exposure_push);
         ctx.vk().CmdDispatch(ctx.cmd(), 1, 1, 1);
@@ -93,7 +93,8 @@ tl::expected<void, Error> Renderer::declare_post(rg::GraphBuilder& graph, rg::Bl
             ctx.vk().CmdPushConstants(ctx.cmd(), tone_mapping.layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof fixed,
                                       &fixed);
         }
-        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, tone_mapping.layout, 0, std::span(bindings).first(automatic ? 2 : 1));
+        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, tone_mapping.layout, 0, std::span(bindings).first(automatic ? 2 : 1),
+                 *tone_mapping.bindings);
         ctx.vk().CmdDraw(ctx.cmd(), 3, 1, 0, 0);
     });
     blackboard.put(FrameOutput{picture});

@@ -55,11 +55,11 @@ tl::expected<void, Error> Renderer::declare_depth(rg::GraphBuilder& graph, rg::B
         .reads(frame_.parameters, rg::Access::uniform_graphics)
         .reads(frame_.instances, rg::Access::storage_graphics);
     declare_geometry(pass, frame_.geometry, true);
-    pass.executes([draws = std::move(*draws), layout = program->layout, geometry = frame_.geometry,
+    pass.executes([draws = std::move(*draws), program = *program, geometry = frame_.geometry,
                    parameters = frame_.parameters, instances = frame_.instances](rg::PassContext& ctx) {
         const std::array<rg::Binding, 2> bindings = {ctx.uniform(0, parameters), ctx.storage(1, instances)};
-        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, bindings);
-        DrawRecorder recorder(ctx, layout, geometry, true);
+        ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, program.layout, 0, bindings, *program.bindings);
+        DrawRecorder recorder(ctx, program.layout, geometry, true);
         for (const Draw& draw : draws) {
             recorder.draw(draw);
         }
@@ -74,7 +74,7 @@ tl::expected<void, Error> Renderer::declare_opaque(rg::GraphBuilder& graph, rg::
                          .linear_sampler = linear_sampler_.get(),
                          .nearest_sampler = nearest_sampler_.get()};
     inputs.find(blackboard, false);
-    VkPipelineLayout layout = VK_NULL_HANDLE;
+    Program surfaces; // of each draw but for the pipeline
     std::vector<Draw> draws;
     for (const std::uint32_t instance : frame_.lists.surfaces) {
         const std::uint32_t primitive = scene_.instances[instance].primitive;
@@ -84,7 +84,7 @@ tl::expected<void, Error> Renderer::declare_opaque(rg::GraphBuilder& graph, rg::
         }
         Draw& draw = draws.emplace_back(instance_draw(instance));
         draw.pipeline = program->pipeline;
-        layout = program->layout;
+        surfaces = *program;
     }
     // Depth is already there, so the order is free: few changes of state. By material as it stands in the scene, for
     // the order of handles differs from run to run.
@@ -115,10 +115,10 @@ tl::expected<void, Error> Renderer::declare_opaque(rg::GraphBuilder& graph, rg::
         .reads(images.depth, rg::Access::depth_attachment);
     declare_geometry(pass, frame_.geometry, true);
     inputs.declare(pass);
-    pass.executes([draws = std::move(draws), layout, sky, inputs, geometry = frame_.geometry](rg::PassContext& ctx) {
+    pass.executes([draws = std::move(draws), surfaces, sky, inputs, geometry = frame_.geometry](rg::PassContext& ctx) {
         if (!draws.empty()) {
-            inputs.push(ctx, layout);
-            DrawRecorder recorder(ctx, layout, geometry, true);
+            inputs.push(ctx, surfaces);
+            DrawRecorder recorder(ctx, surfaces.layout, geometry, true);
             for (const Draw& draw : draws) {
                 recorder.draw(draw);
             }
@@ -126,7 +126,7 @@ tl::expected<void, Error> Renderer::declare_opaque(rg::GraphBuilder& graph, rg::
         if (sky.pipeline != VK_NULL_HANDLE) {
             ctx.vk().CmdBindPipeline(ctx.cmd(), VK_PIPELINE_BIND_POINT_GRAPHICS, sky.pipeline);
             const rg::Binding parameters = ctx.uniform(0, inputs.parameters);
-            ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, sky.layout, 0, {&parameters, 1});
+            ctx.push(VK_PIPELINE_BIND_POINT_GRAPHICS, sky.layout, 0, {&parameters, 1}, *sky.bindings);
             ctx.vk().CmdDraw(ctx.cmd(), 3, 1, 0, 0);
         }
     });

@@ -43,7 +43,7 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
                          .linear_sampler = linear_sampler_.get(),
                          .nearest_sampler = nearest_sampler_.get()};
     inputs.find(blackboard, true);
-    VkPipelineLayout layout = VK_NULL_HANDLE;
+    Program surfaces; // of each draw but for the pipeline
     std::vector<TransparentDraw> transparents;
     for (const std::uint32_t instance : frame_.lists.transparents) {
         const std::uint32_t primitive = scene_.instances[instance].primitive;
@@ -51,7 +51,7 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
         if (!program) {
             return tl::unexpected(program.error());
         }
-        layout = program->layout;
+        surfaces = *program;
         Draw draw = instance_draw(instance);
         draw.pipeline = program->pipeline;
         TransparentDraw& transparent = transparents.emplace_back();
@@ -79,9 +79,9 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
             return added;
         }
     }
-    pass.executes([transparents = std::move(transparents), layout, inputs, geometry = frame_.geometry,
+    pass.executes([transparents = std::move(transparents), surfaces, inputs, geometry = frame_.geometry,
                    particles = frame_.particles, system = particles_, surroundings](rg::PassContext& ctx) {
-        DrawRecorder recorder(ctx, layout, geometry, true);
+        DrawRecorder recorder(ctx, surfaces.layout, geometry, true);
         bool inputs_bound = false;
         const auto draw_particles = [&](std::size_t interval) {
             if (particles) {
@@ -93,7 +93,7 @@ tl::expected<void, Error> Renderer::declare_transparents(rg::GraphBuilder& graph
         for (std::size_t i = 0; i < transparents.size(); ++i) {
             draw_particles(i);
             if (!inputs_bound) {
-                inputs.push(ctx, layout);
+                inputs.push(ctx, surfaces);
                 inputs_bound = true;
             }
             for (std::size_t side = 0; side < transparents[i].count; ++side) {

@@ -132,20 +132,11 @@ public:
     }
 
     [[nodiscard]] std::vector<ReflectedBinding> used() const {
-        std::map<std::tuple<std::uint32_t, std::uint32_t, VkDescriptorType>, ReflectedBinding> by_place;
-        for (const auto& [id, variable] : variables_) {
-            if (!variable.used) {
-                continue;
-            }
-            const ReflectedBinding& reflected = variable.reflected;
-            const auto [found, added] =
-                by_place.try_emplace({reflected.set, reflected.binding, reflected.type}, reflected);
-            found->second.may_read |= reflected.may_read;
-            found->second.may_write |= reflected.may_write;
-        }
         std::vector<ReflectedBinding> out;
-        for (const auto& [place, reflected] : by_place) {
-            out.push_back(reflected);
+        for (const auto& [id, variable] : variables_) {
+            if (variable.used) {
+                merge_bindings(out, {&variable.reflected, 1});
+            }
         }
         return out;
     }
@@ -279,6 +270,19 @@ tl::expected<std::vector<ReflectedBinding>, std::string> reflect_bindings(std::s
         at += count;
     }
     return read.used();
+}
+
+void merge_bindings(std::vector<ReflectedBinding>& bindings, std::span<const ReflectedBinding> more) {
+    const auto place = [](const ReflectedBinding& at) { return std::tuple(at.set, at.binding, at.type); };
+    for (const ReflectedBinding& added : more) {
+        const auto found = std::ranges::lower_bound(bindings, place(added), {}, place);
+        if (found == bindings.end() || place(*found) != place(added)) {
+            bindings.insert(found, added);
+        } else {
+            found->may_read |= added.may_read;
+            found->may_write |= added.may_write;
+        }
+    }
 }
 
 bool checks_bindings(bool asked) {

@@ -73,7 +73,7 @@ Result FrameLoop::make(engine::Scene scene, FrameLoopInfo info) {
     if (info.fog) {
         info.fog->settings.async_compute = info.two_queues && info.ask_for_async;
         auto glue = VolumetricsGlue::create(*device_, cache_->handle(), frames_in_flight, info.renderer.color_format,
-                                            *info.fog);
+                                            *info.fog, info.check_bindings);
         if (!glue) {
             return tl::unexpected(glue.error());
         }
@@ -85,6 +85,7 @@ Result FrameLoop::make(engine::Scene scene, FrameLoopInfo info) {
     rg::ExecutorInfo executor_info = device_->executor_info(profile_);
     executor_info.frames_in_flight = frames_in_flight;
     executor_info.poison_transients = info.poison;
+    executor_info.check_bindings = info.check_bindings;
     auto executor = rg::Executor::create(std::move(executor_info));
     if (!executor) {
         return tl::unexpected(engine::Error{executor.error().message});

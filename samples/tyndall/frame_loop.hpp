@@ -33,7 +33,8 @@ struct FrameLoopInfo {
     bool ask_for_async =
         true; ///< of two: the fog asks for async compute; else measured durations decide (with profile)
     bool profile = false;
-    bool poison = false; ///< rg::ExecutorInfo::poison_transients
+    bool poison = false;         ///< rg::ExecutorInfo::poison_transients
+    bool check_bindings = false; ///< rg::ExecutorInfo::check_bindings
 };
 
 /// What one frame is to leave behind.

@@ -197,7 +197,8 @@ int run(int argc, char** argv) {
         ->check(CLI::IsMember({"one", "two", "measured"}))
         ->capture_default_str();
     render_command->add_flag("--validate", render.validate,
-                             "run under the Khronos validation layer; a message fails the run");
+                             "run under the Khronos validation layer, and compare what passes push with what their "
+                             "shaders bind; a message fails the run");
     render_command->add_flag("--poison", render.poison,
                              "fill transients with NaN before they are written: a picture that changes reads what "
                              "nobody wrote");

@@ -331,6 +331,7 @@ Expected<void> render(const RenderArguments& arguments) {
                    arguments.explain || arguments.explain_file || arguments.json || arguments.export_frame ||
                    arguments.trace;
     info.poison = arguments.poison;
+    info.check_bindings = arguments.validate;
     info.renderer.exposure.ev100 = arguments.exposure_ev100;
     const bool exr = std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
                                  [](const auto& path) { return path.extension() == ".exr"; });

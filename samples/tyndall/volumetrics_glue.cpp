@@ -10,10 +10,9 @@ void add_imports(rg::Blackboard& blackboard, std::span<const rg::ImportBinding> 
     imports->bindings.insert(imports->bindings.end(), bindings.begin(), bindings.end());
 }
 
-tl::expected<VolumetricsGlue, engine::Error> VolumetricsGlue::create(const engine::Device& device,
-                                                                     VkPipelineCache cache,
-                                                                     std::uint32_t frames_in_flight,
-                                                                     VkFormat color_format, volumetrics::Fog fog) {
+tl::expected<VolumetricsGlue, engine::Error>
+VolumetricsGlue::create(const engine::Device& device, VkPipelineCache cache, std::uint32_t frames_in_flight,
+                        VkFormat color_format, volumetrics::Fog fog, bool check_bindings) {
     tl::expected<volumetrics::Feature, volumetrics::Error> feature =
         volumetrics::Feature::create({.vk = &device.vk(),
                                       .device = device.handle(),
@@ -21,7 +20,8 @@ tl::expected<VolumetricsGlue, engine::Error> VolumetricsGlue::create(const engin
                                       .memory_properties = device.memory_properties(),
                                       .frames_in_flight = frames_in_flight,
                                       .dual_source_blending = device.info().dual_source_blending,
-                                      .queue_families = device.queue_families()});
+                                      .queue_families = device.queue_families(),
+                                      .check_bindings = check_bindings});
     if (!feature) {
         return tl::unexpected(engine::Error{feature.error().message});
     }

@@ -20,7 +20,7 @@ class VolumetricsGlue {
 public:
     [[nodiscard]] static tl::expected<VolumetricsGlue, engine::Error>
     create(const engine::Device& device, VkPipelineCache cache, std::uint32_t frames_in_flight, VkFormat color_format,
-           volumetrics::Fog fog);
+           volumetrics::Fog fog, bool check_bindings);
 
     /// Registers at frame_begin, after_shadow_maps and after_opaque. `this` must stay where it is from then on.
     [[nodiscard]] tl::expected<void, engine::Error> attach(rg::InjectionPoints& points);

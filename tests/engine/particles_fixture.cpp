@@ -8,6 +8,7 @@ void ParticleFrameTest::SetUp() {
         return;
     }
     rg::ExecutorInfo info = device().executor_info(false);
+    info.check_bindings = true;
     if (mode_from_environment() == Mode::semaphores) {
         info.queues.push_back(info.queues.front());
         info.queues.back().kind = rg::QueueKind::compute;

@@ -54,6 +54,19 @@ TEST_F(DeviceTest, ComputeMapsEachValue) {
     EXPECT_EQ(values.mapped_as<float>()[count - 1], static_cast<float>(count - 1));
 }
 
+TEST_F(DeviceTest, WordsThatAreNoShaderAreRefusedBeforeTheDriverSeesThem) {
+    const std::array<std::uint32_t, 5> words = {};
+    const std::string said = "A shader module cannot be read: The words do not begin as a SPIR-V module of this "
+                             "machine's byte order";
+    const auto compute = create_compute_pipeline(device(), VK_NULL_HANDLE, VK_NULL_HANDLE, words);
+    ASSERT_FALSE(compute.has_value());
+    EXPECT_EQ(compute.error().message, said);
+    const auto graphics =
+        create_graphics_pipeline(device(), VK_NULL_HANDLE, {.vertex_spirv = test_triangle, .fragment_spirv = words});
+    ASSERT_FALSE(graphics.has_value());
+    EXPECT_EQ(graphics.error().message, said);
+}
+
 /// A 64 x 64 target with depth, and what is drawn into it.
 class Triangle : public DeviceTest {
 protected:

@@ -39,6 +39,17 @@ TEST(ShaderBindings, AreWhatTheShaderDeclares) {
     EXPECT_EQ(reflect_bindings(test_cover), Bindings{});
 }
 
+TEST(ShaderBindings, OfSeveralShadersAreOneList) {
+    Bindings bindings;
+    merge_bindings(bindings, Bindings{{0, 2, storage_buffer, true, false}, {0, 1, storage_buffer, false, true}});
+    merge_bindings(bindings, Bindings{{0, 2, storage_buffer, false, true}, {0, 1, sampled, true, false}});
+    merge_bindings(bindings, Bindings{{1, 0, sampled, true, false}, {0, 1, sampled, true, false}});
+    EXPECT_EQ(bindings, (Bindings{{0, 1, sampled, true, false},
+                                  {0, 1, storage_buffer, false, true},
+                                  {0, 2, storage_buffer, true, true},
+                                  {1, 0, sampled, true, false}}));
+}
+
 TEST(ShaderBindings, OfEveryKindAndWithoutWhatIsNotTouched) {
     const Bindings expected = {{0, 0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, true, false},
                                {0, 1, storage_buffer, true, true},
