@@ -159,7 +159,7 @@ tl::expected<Pipeline, Error> create_graphics_pipeline(const Device& device, VkP
                                                        const GraphicsPipelineInfo& info) {
     const bool has_fragment = !info.fragment_spirv.empty();
     const std::span<const std::uint32_t> last_spirv = has_fragment ? info.fragment_spirv : info.vertex_spirv;
-    auto bindings = reflect({info.vertex_spirv, last_spirv});
+    auto bindings = has_fragment ? reflect({info.vertex_spirv, info.fragment_spirv}) : reflect({info.vertex_spirv});
     if (!bindings) {
         return tl::unexpected(bindings.error());
     }

@@ -101,6 +101,7 @@ struct SpecializationConstant {
     std::uint32_t value = 0;
 };
 
+/// Refuses words that rg::reflect_bindings cannot read, as create_graphics_pipeline does.
 [[nodiscard]] tl::expected<Pipeline, Error>
 create_compute_pipeline(const Device& device, VkPipelineCache cache, VkPipelineLayout layout,
                         std::span<const std::uint32_t> spirv, std::span<const SpecializationConstant> constants = {});

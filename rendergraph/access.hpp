@@ -25,7 +25,7 @@ enum class Access : std::uint8_t {
     storage_compute,              ///
     color_attachment,             ///< dynamic rendering; the order of declaration is the attachment's index
     depth_attachment,             ///< depth and stencil tested, and written unless the verb is `reads`
-    resolve_attachment,           ///< the destination of a resolve at the end of rendering
+    resolve_attachment,           ///< at the end of rendering the n-th takes the n-th multisampled color_attachment
     transfer_source,              ///< copy, blit and resolve commands
     transfer_destination,         ///< copy, blit, resolve and clear commands
     host,                         ///< mapped memory, read or written on the CPU
@@ -83,7 +83,8 @@ struct AccessScope {
     VkAccessFlags2 access = 0;
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; ///< UNDEFINED for buffers
 };
-[[nodiscard]] inline AccessScope access_scope(Access access, Direction direction, VkFormat format) {
+/// In the header, since compile asks it for every access.
+[[nodiscard]] inline AccessScope access_scope(Access access, Direction direction, VkFormat format_or_undefined) {
     const AccessInfo& info = access_info(access);
     AccessScope scope;
     scope.stages = info.stages;
@@ -92,8 +93,8 @@ struct AccessScope {
     if (access == Access::depth_attachment) {
         scope.access |= info.read_mask; // testing reads, also where a clear replaced the content
     }
-    if (format != VK_FORMAT_UNDEFINED) {
-        const bool depth = is_depth_or_stencil(format);
+    if (format_or_undefined != VK_FORMAT_UNDEFINED) {
+        const bool depth = is_depth_or_stencil(format_or_undefined);
         scope.layout = !depth                         ? info.color_layout
                        : direction == Direction::read ? info.depth_read_only_layout
                                                       : info.depth_layout;

@@ -115,13 +115,11 @@ std::uint32_t heap_of(std::vector<Heap>& heaps, std::uint32_t memory_type_bits) 
 
 /// Those that begin together stay as they are, by resource.
 Scratch<Block> by_first_slot(std::span<const Block> blocks) {
-    Scratch<Keyed> keyed(blocks.size());
-    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
-        keyed[i] = {blocks[i].first_slot, i};
+    Scratch<Block> sorted;
+    sorted.reserve(blocks.size());
+    for (const std::uint32_t i : order_by_key(blocks.size(), [&](std::uint32_t i) { return blocks[i].first_slot; })) {
+        sorted.push_back(blocks[i]);
     }
-    sort_by_key(keyed);
-    Scratch<Block> sorted(blocks.size());
-    std::transform(keyed.begin(), keyed.end(), sorted.begin(), [&](const Keyed& block) { return blocks[block.value]; });
     return sorted;
 }
 

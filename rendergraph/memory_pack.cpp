@@ -1,7 +1,6 @@
 // Offsets for blocks that may share bytes unless they conflict: dynamic storage allocation, by greedy orders.
 // In: sizes, alignments, conflicts. Out: an offset each. Invariant: blocks in conflict have no byte in common.
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 #include "rendergraph/memory_types.hpp"
@@ -21,8 +20,8 @@ constexpr std::size_t most_exact_blocks = 7;
 constexpr std::size_t most_steps = 8192;
 constexpr std::size_t most_quick_steps = 2048;
 
-/// The bytes that a block may not have, by begin. Blocks that follow one another in an order mostly conflict with the
-/// same others, so that few bytes change from one to the next.
+/// The bytes that a block may not have, by begin. In the order of first slots, and of sizes where many are equal,
+/// blocks that follow one another mostly conflict with the same others, so that few bytes change from one to the next.
 class TakenBytes {
 public:
     explicit TakenBytes(std::size_t block_count)
@@ -31,11 +30,13 @@ public:
     void place(std::uint32_t block, VkDeviceSize begin, VkDeviceSize end) { placed_[block] = {begin, end}; }
     [[nodiscard]] VkDeviceSize begin_of(std::uint32_t block) const { return placed_[block].begin; }
 
-    /// Makes it the bytes of those in conflict with a block. O(taken before + conflicts + changes x taken).
+    /// Makes it the bytes of those in conflict with a block, which must be placed before the next one is moved to. Each
+    /// block once; who is in whose `conflicts` is mutual. O(taken before + conflicts), and where more than a few come
+    /// O(taken log taken).
     void move_to(std::uint32_t block, std::span<const std::uint32_t> conflicts) {
         for (const std::uint32_t other : conflicts) {
             waiting_for_[other] = block;
-            ++placed_conflicts_[other]; // as this block is placed next
+            ++placed_conflicts_[other];
         }
         // What stays and what comes is no pattern that a branch predictor could learn: counted, without branches.
         std::size_t stay = 0;
@@ -112,7 +113,7 @@ private:
     Scratch<std::uint32_t> waiting_for_; ///< by block: the last block that conflicts with it and has not met it yet
     Scratch<std::uint32_t> taken_;       ///< blocks, by begin; the first count_
     Scratch<std::uint32_t> come_;
-    Scratch<std::uint32_t> placed_conflicts_; ///< by block, how many of them
+    Scratch<std::uint32_t> placed_conflicts_; ///< by block: placed blocks that conflict with it
     std::size_t count_ = 0;
     std::uint32_t last_ = 0; ///< placed
 };
@@ -156,14 +157,7 @@ Scratch<std::uint32_t> as_they_come(std::size_t count) {
 }
 template <typename Key>
 Scratch<std::uint32_t> descending_by(std::span<const Block> blocks, Key&& key) {
-    Scratch<Keyed> keyed(blocks.size());
-    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
-        keyed[i] = {~std::uint64_t{key(blocks[i])}, i};
-    }
-    sort_by_key(keyed);
-    Scratch<std::uint32_t> order(blocks.size());
-    std::transform(keyed.begin(), keyed.end(), order.begin(), [](const Keyed& block) { return block.value; });
-    return order;
+    return order_by_key(blocks.size(), [&](std::uint32_t i) { return ~std::uint64_t{key(blocks[i])}; });
 }
 
 /// Tries the other orders until `best` needs no more than `enough_bytes`.

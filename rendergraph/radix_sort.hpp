@@ -56,4 +56,19 @@ inline void sort_by_key(Scratch<Keyed>& items) {
     }
 }
 
+/// The numbers below `count` by `key(number)`, ascending; equal keys by number.
+template <typename Key>
+[[nodiscard]] Scratch<std::uint32_t> order_by_key(std::size_t count, Key&& key) {
+    Scratch<Keyed> keyed(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        keyed[i] = {key(i), i};
+    }
+    sort_by_key(keyed);
+    Scratch<std::uint32_t> order(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        order[i] = keyed[i].value;
+    }
+    return order;
+}
+
 } // namespace tyndall::rg::stages

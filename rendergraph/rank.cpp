@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <numeric>
 
 #include "rendergraph/assign.hpp"
 #include "rendergraph/radix_sort.hpp"
@@ -94,15 +93,8 @@ Urgency urgency_of(const Work& work, const Costs& costs) {
             before = std::max(before, rank[item] + mean);
         }
     }
-    Scratch<Keyed> keyed(rank.size());
-    for (std::uint32_t item = 0; item < rank.size(); ++item) {
-        keyed[item] = {~static_cast<std::uint64_t>(rank[item]), item}; // no rank is negative
-    }
-    sort_by_key(keyed);
-    urgency.items.reserve(rank.size());
-    for (const Keyed& item : keyed) {
-        urgency.items.push_back(item.value);
-    }
+    // Descending: durations are positive, waits not negative.
+    urgency.items = order_by_key(rank.size(), [&](std::uint32_t i) { return ~static_cast<std::uint64_t>(rank[i]); });
     return urgency;
 }
 

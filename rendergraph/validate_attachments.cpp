@@ -111,10 +111,11 @@ void validate_attachments(const GraphDesc& graph, const PassDesc& pass, Diagnost
         any_resolves = any_resolves || resolves;
         first = first == nullptr ? &access : first;
         first_drawn = first_drawn == nullptr && !resolves ? &access : first_drawn;
-        const AccessDesc& compared_with = resolves || first_drawn == nullptr ? *first : *first_drawn;
+        const AccessDesc& compared_with = resolves || first_drawn == &access ? *first : *first_drawn;
+        const bool one_resolves = resolves || compared_with.access == Access::resolve_attachment;
         const Target other = target_of(compared_with, graph.resources[compared_with.resource].image);
         Target compared = target;
-        compared.samples = resolves ? other.samples : target.samples;
+        compared.samples = one_resolves ? other.samples : target.samples;
         if (compared != other) {
             bad(access, &compared_with,
                 text_of(graph.resources[compared_with.resource].name, other) + " and " +

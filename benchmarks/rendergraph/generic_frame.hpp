@@ -59,6 +59,9 @@ DeclaredGraph generic_frame(const std::vector<std::string>& pass_names, const st
     return graph.finish();
 }
 
+/// Until the executor has made its objects and grown its lists.
+inline constexpr std::uint32_t frames_to_settle = 10;
+
 inline const QueueTopology two_queues = {{{QueueKind::graphics, 0, can_graphics | can_compute | can_transfer},
                                           {QueueKind::compute, 1, can_compute | can_transfer}}};
 

@@ -17,31 +17,39 @@
 
 namespace {
 
-/// Keeps a thread on one processor, the `index`-th of those that the process may use.
-void keep_on(pthread_t thread, const cpu_set_t& allowed, int index) {
+/// Those that the process may use.
+cpu_set_t allowed_processors() {
+    cpu_set_t allowed = {};
+    pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed);
+    return allowed;
+}
+
+/// Keeps a thread on one processor, the `index`-th of those allowed; false where that could not be done.
+bool keep_on(pthread_t thread, const cpu_set_t& allowed, int index) {
     for (int processor = 0; processor < CPU_SETSIZE; ++processor) {
         if (CPU_ISSET(processor, &allowed) && index-- == 0) {
             cpu_set_t one = {};
             CPU_SET(processor, &one);
-            pthread_setaffinity_np(thread, sizeof one, &one);
+            return pthread_setaffinity_np(thread, sizeof one, &one) == 0;
         }
     }
+    return false;
 }
 
 /// Keeps the calling thread on the first processor and another on the second, and lets the first go again.
 class TwoProcessors {
 public:
-    explicit TwoProcessors(std::thread& other) {
-        pthread_getaffinity_np(pthread_self(), sizeof allowed_, &allowed_);
-        keep_on(pthread_self(), allowed_, 0);
-        keep_on(other.native_handle(), allowed_, 1);
-    }
+    explicit TwoProcessors(std::thread& other)
+        : allowed_(allowed_processors()),
+          apart_(keep_on(pthread_self(), allowed_, 0) && keep_on(other.native_handle(), allowed_, 1)) {}
     TwoProcessors(const TwoProcessors&) = delete;
     TwoProcessors& operator=(const TwoProcessors&) = delete;
     ~TwoProcessors() { pthread_setaffinity_np(pthread_self(), sizeof allowed_, &allowed_); }
+    [[nodiscard]] bool are_apart() const { return apart_; }
 
 private:
-    cpu_set_t allowed_ = {};
+    cpu_set_t allowed_;
+    bool apart_;
 };
 
 enum class Job : int { none, given, end };
@@ -132,12 +140,12 @@ template <typename Worker>
 void hand_over(benchmark::State& state) {
     using Clock = std::chrono::steady_clock;
     const std::chrono::microseconds pause(state.range(0));
-    if (std::thread::hardware_concurrency() < 2) {
+    Worker worker;
+    const TwoProcessors processors(worker.thread());
+    if (!processors.are_apart()) {
         state.SkipWithError("needs two processors");
         return;
     }
-    Worker worker;
-    const TwoProcessors apart(worker.thread());
     std::vector<double> times_us;
     for (auto _ : state) {
         if (pause.count() > 0) {

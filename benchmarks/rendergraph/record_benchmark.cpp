@@ -15,8 +15,6 @@ namespace {
 using namespace tyndall::rg;
 using namespace tyndall::rg::bench;
 
-constexpr std::uint32_t frames_to_settle = 10; // objects made, lists grown
-
 struct BindsItsOutput {
     void operator()(PassContext& ctx, Image output) const {
         ctx.push(VK_PIPELINE_BIND_POINT_COMPUTE, VK_NULL_HANDLE, 0, std::array{ctx.storage(0, output)});

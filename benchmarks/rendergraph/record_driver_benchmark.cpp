@@ -19,8 +19,6 @@ using namespace tyndall::rg;
 using namespace tyndall::rg::bench;
 using CommandPool = engine::Unique<VkCommandPool, &DeviceTable::DestroyCommandPool>;
 
-constexpr std::uint32_t frames_to_settle = 10; // objects made, lists grown
-
 struct DispatchesOnce {
     VkPipeline pipeline = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;

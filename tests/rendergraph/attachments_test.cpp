@@ -130,6 +130,22 @@ TEST(AttachmentMistakes, ResolveIntoAnotherFormat) {
                second, first);
 }
 
+TEST(AttachmentMistakes, ResolveBeforeWhatIsDrawn) {
+    GraphBuilder graph;
+    Image small = graph.create_image("small", color_image(32, 64));
+    Image color = graph.create_image("color", multisampled);
+    PassBuilder pass = graph.add_pass("draw", PassKind::graphics);
+    pass.has_side_effect("test");
+    const unsigned first = __LINE__ + 1;
+    pass.writes(small, Access::resolve_attachment);
+    const unsigned second = __LINE__ + 1;
+    pass.writes(color, Access::color_attachment);
+    expect_one(mistakes(graph), DiagnosticCode::attachment_mismatch,
+               "Pass 'draw' renders to 'small' (32x64, 1 layers, 1 samples) and 'color' (64x64, 1 layers, 4 samples); "
+               "make them equal",
+               second, first);
+}
+
 /// What is resolved into comes first; the two that are drawn to are compared with each other.
 TEST(AttachmentMistakes, SamplesBehindAResolve) {
     GraphBuilder graph;
