@@ -247,7 +247,7 @@ TEST_F(FogParticles, AreSeenByEveryVariantAndProjection) {
         return exact_medium(scene.inputs.fog_particles, column_ray(froxel % width, froxel / width % height),
                             froxel / width / height);
     };
-    EXPECT_LE(worst(perspective), 6e-4); // fp16 has 11 bits
+    EXPECT_LE(worst(perspective), 1e-3); // fp16 has 11 bits, and drivers round or cut
 
     scene.inputs.camera.clip_from_view = glm::dmat4(1.0); // 20 m wide, 12 m high, to 100 m
     scene.inputs.camera.clip_from_view[0][0] = 1.0 / 10.0;
@@ -264,7 +264,7 @@ TEST_F(FogParticles, AreSeenByEveryVariantAndProjection) {
         }
         return exact_medium(from_eye, {0.0, 0.0, -1.0}, froxel / width / height);
     };
-    EXPECT_LE(worst(orthographic), 6e-4);
+    EXPECT_LE(worst(orthographic), 1e-3);
 }
 
 TEST_F(FogParticles, MoveAtOnceAndCostNoHistory) {
