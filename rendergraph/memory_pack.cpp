@@ -56,7 +56,9 @@ public:
             come = 0;
             for (const std::uint32_t other : conflicts) {
                 come_[come] = other;
-                come += static_cast<std::size_t>((waiting_for_[other] == block) & (placed_[other].begin != unplaced));
+                const bool waits = waiting_for_[other] == block;
+                const bool is_placed = placed_[other].begin != unplaced;
+                come += static_cast<std::size_t>(waits & is_placed);
             }
         }
         last_ = block;

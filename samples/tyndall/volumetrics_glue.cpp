@@ -27,7 +27,7 @@ VolumetricsGlue::create(const engine::Device& device, VkPipelineCache cache, std
     }
     VolumetricsGlue glue;
     glue.feature_ = std::move(*feature);
-    glue.fog_ = fog;
+    glue.fog_ = std::move(fog);
     glue.color_format_ = color_format;
     return glue;
 }
