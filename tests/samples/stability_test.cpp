@@ -3,8 +3,9 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <regex>
 #include <set>
+#include <sstream>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -119,25 +120,37 @@ TEST(Stability, TheExtremesHoldAndTheFilesHoldWhatIsPrinted) {
 const std::set<std::string> of_the_file_only{"medium.volumes[].radius_m", "medium.volumes[].density.slices",
                                              "shadow_near_m"};
 
+std::vector<std::string> split(const std::string& text, char between) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, between);) {
+        parts.push_back(part);
+    }
+    return parts;
+}
+
 TEST(Stability, EveryRangeOfTheFogFileHasARefusal) {
     std::set<std::string> refused;
     for (const samples::Refusal& refusal : samples::stability_refusals()) {
-        refused.insert(std::regex_replace(refusal.parameter, std::regex(R"(\[0\])"), "[]"));
+        std::string key = refusal.parameter;
+        if (const std::size_t first = key.find("[0]"); first != std::string::npos) {
+            key.replace(first, 3, "[]");
+        }
+        refused.insert(key);
     }
     std::ifstream docs(TYNDALL_SAMPLES "/../docs/fog.md");
-    // | `key` or `key`, `key` | meaning | range | default |
-    const std::regex row(R"(^\| (`[a-z_0-9.\[\]]+`(, `[a-z_0-9.\[\]]+`)*) \| .* \| ([^|]+) \| [^|]*\|$)");
     std::size_t keys = 0;
     for (std::string line; std::getline(docs, line);) {
-        std::smatch parts;
-        if (!std::regex_match(line, parts, row) || !std::regex_search(parts[3].str(), std::regex("[0-9]"))) {
+        // | `key` or `key`, `key` | meaning | range | default |
+        const std::vector<std::string> cells = split(line, '|');
+        if (cells.size() < 5 || cells[1].rfind(" `", 0) != 0 ||
+            cells[cells.size() - 2].find_first_of("0123456789") == std::string::npos) {
             continue;
         }
-        const std::string names = parts[1];
-        const std::regex name("[a-z_0-9.\\[\\]]+");
-        for (std::sregex_iterator key(names.begin(), names.end(), name); key != std::sregex_iterator(); ++key) {
+        const std::vector<std::string> names = split(cells[1], '`');
+        for (std::size_t i = 1; i < names.size(); i += 2) {
             ++keys;
-            EXPECT_TRUE(refused.contains(key->str()) || of_the_file_only.contains(key->str())) << key->str();
+            EXPECT_TRUE(refused.contains(names[i]) || of_the_file_only.contains(names[i])) << names[i];
         }
     }
     EXPECT_GT(keys, 40U);
