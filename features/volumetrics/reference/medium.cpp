@@ -52,7 +52,8 @@ double phase(const PhaseLobe& lobe, double cos_theta) {
 double phase(const Medium& medium, double cos_theta) {
     double sum = 0.0;
     double weights = 0.0;
-    for (const PhaseLobe& lobe : phase_of(medium).all()) {
+    const PhaseLobes phase_function = phase_of(medium);
+    for (const PhaseLobe& lobe : phase_function.all()) {
         sum += static_cast<double>(lobe.weight) * phase(lobe, cos_theta);
         weights += static_cast<double>(lobe.weight);
     }
