@@ -238,7 +238,9 @@ TEST_F(FogParticles, AreSeenByEveryVariantAndProjection) {
         const std::vector<glm::dvec4> found = medium(scene);
         double error = 0.0;
         for (std::size_t i = 0; i < std::size_t{slices} * height * width; ++i) {
-            error = std::max(error, std::abs(found[i].a - exact(i).a) / (exact(i).a + 0.1));
+            // fp16 has 11 bits. Drivers may round or cut: up to half a unit above, up to a whole one below.
+            const double above = (found[i].a - exact(i).a) / (exact(i).a + 0.1);
+            error = std::max(error, above > 0.0 ? above : -0.5 * above);
         }
         return error;
     };
@@ -247,7 +249,7 @@ TEST_F(FogParticles, AreSeenByEveryVariantAndProjection) {
         return exact_medium(scene.inputs.fog_particles, column_ray(froxel % width, froxel / width % height),
                             froxel / width / height);
     };
-    EXPECT_LE(worst(perspective), 1e-3); // fp16 has 11 bits, and drivers round or cut
+    EXPECT_LE(worst(perspective), 5e-4);
 
     scene.inputs.camera.clip_from_view = glm::dmat4(1.0); // 20 m wide, 12 m high, to 100 m
     scene.inputs.camera.clip_from_view[0][0] = 1.0 / 10.0;
@@ -264,7 +266,7 @@ TEST_F(FogParticles, AreSeenByEveryVariantAndProjection) {
         }
         return exact_medium(from_eye, {0.0, 0.0, -1.0}, froxel / width / height);
     };
-    EXPECT_LE(worst(orthographic), 1e-3);
+    EXPECT_LE(worst(orthographic), 5e-4);
 }
 
 TEST_F(FogParticles, MoveAtOnceAndCostNoHistory) {
