@@ -108,7 +108,7 @@ public:
 
     /// Validates, makes the pipelines that the view's frame needs, writes its uniforms into `frame_slot`. After an
     /// error the view has no fog in this frame: the declare functions do nothing.
-    [[nodiscard]] tl::expected<void, Error> begin_frame(const FrameInputs& inputs);
+    [[nodiscard]] tl::expected<void, Error> begin_frame(const FrameInputs& given);
 
     /// Clustering of fog particles, density injection and light clustering.
     [[nodiscard]] tl::expected<void, Error>

@@ -140,7 +140,7 @@ engine::Scene engine_scene(const PrecisionScene& scene) {
         }
         instance.sphere = {instance.box.center(), 0.5 * glm::length(instance.box.extent())};
         out.bounds.grow(instance.box);
-        out.instances.push_back(std::move(instance));
+        out.instances.push_back(instance);
     }
     engine::Camera camera;
     camera.name = "camera";

@@ -91,7 +91,8 @@ PrecisionScene spots() {
     scene.surfaces = {make_room({-8.0, 0.0, -24.0}, {8.0, 7.0, 2.0}, glm::dvec3(0.5))};
     for (int i = 0; i < 6; ++i) {
         const double x = i % 2 == 0 ? -3.0 : 3.0;
-        const double z = -6.0 - 5.0 * (i / 2);
+        const int pair = i / 2;
+        const double z = -6.0 - 5.0 * pair;
         scene.surfaces.push_back(make_box({x - 0.4, 0.0, z - 0.4}, {x + 0.4, 7.0, z + 0.4}, glm::dvec3(0.7, 0.6, 0.5)));
     }
     scene.fog.medium.homogeneous = {.extinction_per_m = 0.06F, .albedo = glm::vec3(0.95F)};

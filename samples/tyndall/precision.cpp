@@ -178,7 +178,7 @@ Expected<void> write_files(const PrecisionArguments& arguments, const Study& stu
          {"precision.json", to_json(study.rows, study.causes, arguments.size, device)},
          {"causes.csv", to_csv(study.causes)}}};
     for (const auto& [name, text] : files) {
-        if (const auto written = write(*arguments.folder / name, text); !written) {
+        if (auto written = write(*arguments.folder / name, text); !written) {
             return written;
         }
     }

@@ -136,7 +136,7 @@ Expected<std::string> choose_and_run(const PrecisionArguments& arguments, Bench&
     }
     std::string text;
     for (const Wish& wish : wishes) {
-        const Expected<std::string> line = fulfil(wish, bench, judged_rows(bench, rows));
+        Expected<std::string> line = fulfil(wish, bench, judged_rows(bench, rows));
         if (!line) {
             return line;
         }

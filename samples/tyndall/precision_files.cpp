@@ -49,7 +49,7 @@ Expected<void> write_pictures(const std::filesystem::path& folder, const Bench& 
             exact.values[first + channel] = static_cast<float>(bench.truths.front().values[i][at]);
         }
     }
-    if (const auto written = write_pfm(folder / (bench.scene.name + "_exact.pfm"), exact); !written) {
+    if (auto written = write_pfm(folder / (bench.scene.name + "_exact.pfm"), exact); !written) {
         return written;
     }
     return write_pfm(folder / (bench.scene.name + "_picture.pfm"), picture);

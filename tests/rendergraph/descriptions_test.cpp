@@ -5,7 +5,7 @@ namespace tyndall::rg::test {
 namespace {
 
 TEST(Diagnostics, APassIsLeftNoQueue) {
-    const auto answer = [](std::vector<QueueKind> forbidden, QueueWish wish, const QueueTopology& topology,
+    const auto answer = [](const std::vector<QueueKind>& forbidden, QueueWish wish, const QueueTopology& topology,
                            const std::string& message, const ImportDesc& import = {.has_final = true}) {
         GraphBuilder graph;
         Buffer buffer = graph.import_buffer("buffer", {.size_bytes = 64}, import);

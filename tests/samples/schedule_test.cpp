@@ -90,12 +90,12 @@ nlohmann::json graph_of(const std::filesystem::path& file) {
 
 TEST_F(Schedule, HallIsTheFrameThatTheHallIsRenderedBy) {
     const std::filesystem::path exported = folder_ / "hall.json";
-    const ToolRun run = run_tool({"render", TYNDALL_HALL, "--fog", TYNDALL_SAMPLES "/fog/hall_esm.json", "--size",
-                                  "1280x720", "--frames", "2", "--export-frame", exported.string()});
+    const ToolRun run = run_tool({"render", TYNDALL_HALL, "--fog", std::string(TYNDALL_SAMPLES) + "/fog/hall_esm.json",
+                                  "--size", "1280x720", "--frames", "2", "--export-frame", exported.string()});
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     EXPECT_EQ(graph_of(frame_file("hall")), graph_of(exported))
         << "write it anew: tyndall render hall.gltf --fog samples/fog/hall_esm.json --size 1280x720 --frames 6 "
-           "--export-frame samples/frames/hall.json";
+        << "--export-frame samples/frames/hall.json";
 }
 
 TEST_F(Schedule, DeferredFrameHasTheMemoryOfItsKind) {

@@ -151,7 +151,7 @@ struct Case {
     double error = 3e-3;   ///< relative L2
     double largest = 3e-2; ///< error of a pixel in parts of the brightest
 
-    friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+    friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 };
 
 class Airlight : public FogTest {};

@@ -221,9 +221,10 @@ TEST_F(Change, OfALocalLightIsSeenWithinEightFramesAndOnlyWhereItReaches) {
 TEST_F(Change, OfManyLightsAtOnceLeavesNothingBehind) {
     Scene scene = lit_scene();
     for (int i = 0; i < 40; ++i) {
-        scene.lights.push_back(lamp(
-            {-6.0F + static_cast<float>(i % 8), static_cast<float>(i % 3), -5.0F - static_cast<float>(i / 8) * 2.0F},
-            2.0F, 10.0F));
+        const int row = i / 8;
+        scene.lights.push_back(
+            lamp({-6.0F + static_cast<float>(i % 8), static_cast<float>(i % 3), -5.0F - static_cast<float>(row) * 2.0F},
+                 2.0F, 10.0F));
     }
     EXPECT_LE(residual(eight_frames_after(scene, [](Scene& s) { s.lights.clear(); })), 0.01);
 }

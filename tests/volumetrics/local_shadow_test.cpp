@@ -46,10 +46,10 @@ class LocalShadow : public FogTest {
 protected:
     static constexpr std::uint32_t size = 256;
     static constexpr double near_distance_m = 0.1;
-    const std::vector<Box> boxes{{{-1.6, -3.0, -9.0}, {-0.8, 3.0, -8.2}},
-                                 {{1.2, 0.9, -12.0}, {2.8, 1.5, -7.0}},
-                                 {{-6.0, -1.0, -20.0}, {-3.0, -0.5, -4.0}},
-                                 {{0.2, -2.2, -6.0}, {0.9, -1.2, -5.2}}};
+    const std::vector<Box> boxes_{{{-1.6, -3.0, -9.0}, {-0.8, 3.0, -8.2}},
+                                  {{1.2, 0.9, -12.0}, {2.8, 1.5, -7.0}},
+                                  {{-6.0, -1.0, -20.0}, {-3.0, -0.5, -4.0}},
+                                  {{0.2, -2.2, -6.0}, {0.9, -1.2, -5.2}}};
 
     void SetUp() override {
         FogTest::SetUp();
@@ -66,7 +66,7 @@ protected:
                 const glm::dvec3 ray = view.axes * glm::dvec3(((x + 0.5) / size - 0.5) / view.scale,
                                                               ((y + 0.5) / size - 0.5) / view.scale, 1.0);
                 double z = std::numeric_limits<double>::infinity();
-                for (const Box& box : boxes) {
+                for (const Box& box : boxes_) {
                     z = std::min(z, entry(box, light, ray));
                 }
                 scene_.local_depths.push_back(static_cast<float>(near_distance_m / std::max(z, near_distance_m)));
@@ -75,7 +75,8 @@ protected:
     }
 
     void add_light(const glm::vec3& position, const MapView* spot) {
-        const auto layer = static_cast<float>(scene_.local_depths.size() / (size * size));
+        const std::size_t maps = scene_.local_depths.size() / (size * size);
+        const auto layer = static_cast<float>(maps);
         gpu::GpuLight light{.position_range = glm::vec4(position, 40.0F),
                             .intensity_type = glm::vec4(100.0F, 100.0F, 100.0F, spot != nullptr ? 1.0F : 0.0F),
                             .direction_radius = {0.0F, -1.0F, 0.0F, 0.0F},
@@ -121,7 +122,7 @@ protected:
     }
 
     [[nodiscard]] bool is_dark(const glm::dvec3& point, const glm::dvec3& light, double grown_m) const {
-        return std::any_of(boxes.begin(), boxes.end(), [&](Box box) {
+        return std::any_of(boxes_.begin(), boxes_.end(), [&](Box box) {
             box.low -= grown_m;
             box.high += grown_m;
             return entry(box, light, point - light) < 1.0;

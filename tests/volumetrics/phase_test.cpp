@@ -167,8 +167,10 @@ TEST_F(PhaseOnDevice, DirectedAmbientIsTheIntegralOfRadianceTimesPhase) {
         const glm::dvec3 axes[] = {glm::dvec3(medium.ambient_sh_1[2]), glm::dvec3(medium.ambient_sh_1[0]),
                                    glm::dvec3(medium.ambient_sh_1[1])};
         for (const std::size_t froxel : {0UL, 8UL, 22UL, 40UL}) {
-            const double x = tan_x * (2.0 * static_cast<double>(froxel % 9) / 8.0 - 1.0);
-            const double y = -tan_y * (2.0 * static_cast<double>(froxel / 9) / 4.0 - 1.0);
+            const std::size_t column = froxel % 9;
+            const std::size_t row = froxel / 9;
+            const double x = tan_x * (2.0 * static_cast<double>(column) / 8.0 - 1.0);
+            const double y = -tan_y * (2.0 * static_cast<double>(row) / 4.0 - 1.0);
             const glm::dvec3 to_eye = -glm::normalize(glm::dvec3(x, y, -1.0));
             glm::dvec3 expected(0.0);
             const int rings = 600;

@@ -33,7 +33,10 @@ public:
     }
     /// The three groups of ten bits of the neighbour x, y, z cells away, each -1, 0 or 1.
     [[nodiscard]] glm::dvec3 bits(int x, int y, int z) const {
-        const auto word = [&](std::size_t axis, int side) { return words_[axis][static_cast<std::size_t>(side + 1)]; };
+        const auto word = [&](std::size_t axis, int side) {
+            const int place = side + 1;
+            return words_[axis][static_cast<std::size_t>(place)];
+        };
         std::uint32_t h = seed_ ^ word(0, x) ^ word(1, y) ^ word(2, z);
         h ^= h >> 15U;
         h *= 0x2c1b3c6dU;
